@@ -1,0 +1,18 @@
+// Buffers of fixed size. The large ones, which may be split over pages, are in the generated
+// buffers.wgsl and read through load_node, load_triangle, load_index, load_vertex_word,
+// load_texel_word, load_environment_texel and load_environment_alias.
+
+#include "types.wgsl"
+#include "features.wgsl"
+#include "buffers.wgsl"
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> dispatch: Dispatch;
+@group(0) @binding(2) var<storage, read_write> film: array<FilmPixel>;
+@group(0) @binding(3) var<storage, read_write> status: Status;
+@group(0) @binding(4) var<storage, read> materials: array<Material>;
+@group(0) @binding(5) var<storage, read> textures: array<Texture>;
+@group(0) @binding(6) var<storage, read> lights: array<Light>;
+@group(0) @binding(7) var<storage, read> punctual_lights: array<PunctualLight>;
+// Linear value of each 8-bit sRGB code.
+@group(0) @binding(8) var<storage, read> srgb_to_linear: array<f32>;

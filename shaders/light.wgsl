@@ -1,0 +1,66 @@
+// Light sampling: choose a light, then a point on it.
+
+#include "surface.wgsl"
+#include "material.wgsl"
+#include "sampler.wgsl"
+#include "math/sampling.wgsl"
+#include "light/triangle.wgsl"
+#include "light/punctual.wgsl"
+#include "light/environment.wgsl"
+
+struct LightSample {
+    // Unit vector from the shading point to the light.
+    wi: vec3f,
+    // Radiance (or, if delta, radiance that a delta distribution carries) / pdf.
+    weight: vec3f,
+    // Density over solid angle, the choice of the light included.
+    pdf: f32,
+    // Whether no BSDF sample can find this light.
+    delta: bool,
+    // Where the shadow ray ends, and the error of that point; unused at infinity.
+    position: vec3f,
+    position_error: vec3f,
+    normal: vec3f,
+    at_infinity: bool,
+}
+
+const HAS_LIGHTS: bool = HAS_LIGHT_TRIANGLES || HAS_PUNCTUAL_LIGHTS || HAS_ENVIRONMENT;
+
+fn no_light_sample() -> LightSample {
+    var s: LightSample;
+    return s;
+}
+
+// A sample of the light that arrives at `s`; pdf 0 if there is none.
+fn sample_light(s: Surface, sampler: ptr<function, Sampler>) -> LightSample {
+    let choice = next_2d_bits(sampler);
+    var index = multiply_high(choice.x, frame.light_count);
+    if (unit_float(choice.y) >= lights[index].threshold) {
+        index = lights[index].alias_index;
+    }
+    let light = lights[index];
+    let kind = light.kind_and_index >> LIGHT_KIND_SHIFT;
+    let item = light.kind_and_index & LIGHT_INDEX_MASK;
+    let u = next_2d_bits(sampler);
+    var sample = no_light_sample();
+    if (HAS_LIGHT_TRIANGLES && kind == LIGHT_TRIANGLE) {
+        sample = light_triangle_sample(s, item, vec2f(unit_float(u.x), unit_float(u.y)));
+    } else if (HAS_PUNCTUAL_LIGHTS && kind == LIGHT_PUNCTUAL) {
+        sample = punctual_sample(s, item);
+    } else if (HAS_ENVIRONMENT && kind == LIGHT_ENVIRONMENT) {
+        sample = environment_sample(s, vec2f(unit_float(u.x), unit_float(u.y)), sampler);
+    }
+    sample.pdf *= light.probability;
+    sample.weight /= light.probability;
+    return sample;
+}
+
+// Fraction of a light sample's radiance that reaches the surface.
+fn transmittance_to_light(s: Surface, light: LightSample, seed: u32) -> f32 {
+    let origin = offset_origin(s.position, s.position_error, s.normal, light.wi);
+    if (light.at_infinity) {
+        return transmittance(Ray(origin, T_INFINITE, light.wi), seed);
+    }
+    let target_point = offset_origin(light.position, light.position_error, light.normal, -light.wi);
+    return transmittance(Ray(origin, 1.0, target_point - origin), seed);
+}

@@ -1,0 +1,47 @@
+// Emissive triangles, sampled uniformly over their area.
+
+// A point on the triangle, as seen from `s`.
+fn light_triangle_sample(s: Surface, index: u32, u: vec2f) -> LightSample {
+    let triangle = load_triangle(index);
+    let b = sample_triangle_uniform(u);
+    let position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
+    let cross_edges = triangle_cross(triangle);
+    let cross_length = stable_length(cross_edges);
+    let normal = cross_edges / cross_length;
+    let to_light = position - s.position;
+    let distance = stable_length(to_light);
+    let wi = to_light / distance;
+    let cos_light = -dot(wi, normal);
+    let two_sided = (materials[triangle.material].flags & MATERIAL_DOUBLE_SIDED) != 0u;
+    if (distance == 0.0 || cos_light == 0.0 || (cos_light < 0.0 && !two_sided)) {
+        return no_light_sample();
+    }
+    let emitted = light_triangle_radiance(triangle, index, b) * coverage(triangle, index, b);
+    let pdf = light_triangle_pdf(distance, abs(cos_light), 0.5 * cross_length);
+    var sample: LightSample;
+    sample.wi = wi;
+    sample.weight = emitted / pdf;
+    sample.pdf = pdf;
+    sample.position = position;
+    sample.position_error =
+        GAMMA_7 * (abs(b.x * triangle.v0) + abs(b.y * triangle.v1) + abs(b.z * triangle.v2));
+    sample.normal = normal;
+    return sample;
+}
+
+// Density over solid angle of uniform sampling of the area; the lengths are divided first, since
+// their squares may be out of range.
+fn light_triangle_pdf(distance: f32, cos_light: f32, area: f32) -> f32 {
+    return (distance / area) * (distance / cos_light);
+}
+
+fn light_triangle_radiance(triangle: Triangle, index: u32, b: vec3f) -> vec3f {
+    var uv0 = vec2f(0.0);
+    var uv1 = vec2f(0.0);
+    if (HAS_EMISSIVE_TEXTURE) {
+        let uv = texture_coordinates(index, b);
+        uv0 = uv.xy;
+        uv1 = uv.zw;
+    }
+    return emissive_at(triangle.material, uv0, uv1);
+}

@@ -1,0 +1,56 @@
+// The kernel: each lane owns a pixel and adds samples to it until it has dispatch.target_count.
+
+#include "bindings.wgsl"
+#include "camera.wgsl"
+#include "film.wgsl"
+#include "steps.wgsl"
+#include "sampler.wgsl"
+#include "integrator.wgsl"
+
+const TILE_SIZE: u32 = 8u;
+
+@compute @workgroup_size(64, 1, 1)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let item = id.x / dispatch.lane_stride;
+    if (item * dispatch.lane_stride != id.x || item >= dispatch.item_count) {
+        return;
+    }
+    let position = film_position(dispatch.first_item + item);
+    if (position.x >= frame.width || position.y >= frame.height) {
+        return;
+    }
+    let index = (position.y - frame.first_row) * frame.width + position.x;
+    var pixel = film[index];
+    while (pixel.count < dispatch.target_count) {
+        if (count_step()) {
+            break;
+        }
+        // Draw one sample of the pixel's square.
+        let sample_index = add_u64(dispatch.first_sample_low, dispatch.first_sample_high, pixel.count);
+        var sampler = sampler_begin(position, sample_index, frame.seed);
+        reset_ray_counts();
+        let L = Li(camera_ray(position, next_2d(&sampler)), &sampler);
+        if (out_of_steps()) {
+            break;
+        }
+        film_add(&pixel, L);
+    }
+    film[index] = pixel;
+    if (COUNT_STEPS && pixel.count < dispatch.target_count) {
+        atomicAdd(&status.unfinished, 1u);
+    }
+}
+
+// The pixel of a work item. Neighbouring items share an 8x8 tile; tiles are visited in a permuted
+// order, so that a driver that hands each thread one contiguous block gives no thread the hard half.
+fn film_position(item: u32) -> vec2u {
+    let tile = ((item / 64u) * frame.tile_step) % frame.tile_count;
+    let lane = item % 64u;
+    let corner = vec2u(tile % frame.tiles_x, tile / frame.tiles_x) * TILE_SIZE;
+    return corner + vec2u(lane % TILE_SIZE, lane / TILE_SIZE) + vec2u(0u, frame.first_row);
+}
+
+fn add_u64(low: u32, high: u32, n: u32) -> vec2u {
+    let sum = low + n;
+    return vec2u(sum, high + select(0u, 1u, sum < low));
+}

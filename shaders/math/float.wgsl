@@ -1,0 +1,47 @@
+// Floating-point questions that Vulkan lets a driver answer wrongly when asked with operators.
+
+// NaN and infinity may be assumed absent, so `x != x` can be folded away: look at the exponent bits.
+fn is_finite(v: vec3f) -> bool {
+    return all((bitcast<vec3u>(v) & vec3u(0x7f800000u)) != vec3u(0x7f800000u));
+}
+
+// The next larger float; finite input.
+fn next_up(x: f32) -> f32 {
+    let bits = bitcast<u32>(x);
+    if (x == 0.0) {
+        return bitcast<f32>(0x00800000u);
+    }
+    return bitcast<f32>(select(bits - 1u, bits + 1u, x > 0.0));
+}
+
+fn next_down(x: f32) -> f32 {
+    return -next_up(-x);
+}
+
+fn max_component(v: vec3f) -> f32 {
+    return max(v.x, max(v.y, v.z));
+}
+
+fn luminance(c: vec3f) -> f32 {
+    return dot(c, vec3f(0.2126, 0.7152, 0.0722));
+}
+
+fn square(x: f32) -> f32 {
+    return x * x;
+}
+
+// High 32 bits of a * b.
+fn multiply_high(a: u32, b: u32) -> u32 {
+    let a_low = a & 0xffffu;
+    let a_high = a >> 16u;
+    let b_low = b & 0xffffu;
+    let b_high = b >> 16u;
+    let middle = a_high * b_low + ((a_low * b_low) >> 16u);
+    let carry = (middle & 0xffffu) + a_low * b_high;
+    return a_high * b_high + (middle >> 16u) + (carry >> 16u);
+}
+
+// A float in [0, 1), never 1, from the top 24 bits.
+fn unit_float(bits: u32) -> f32 {
+    return f32(bits >> 8u) * 5.9604644775390625e-8;
+}

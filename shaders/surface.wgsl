@@ -1,0 +1,152 @@
+// The surface at a hit: position with its error, normals, texture coordinates.
+
+#include "bindings.wgsl"
+#include "camera.wgsl"
+#include "math/frame.wgsl"
+#include "math/float.wgsl"
+#include "vertex.wgsl"
+#include "accel/bvh.wgsl"
+#include "texture.wgsl"
+
+struct Surface {
+    position: vec3f,
+    // Bound on the rounding error of each coordinate of `position`.
+    position_error: vec3f,
+    // Unit normal of the triangle, on the side that the ray came from.
+    normal: vec3f,
+    // Local frame of the BSDF; z is the shading normal on the same side.
+    shading: ShadingFrame,
+    // Unit vector towards where the ray came from.
+    wo: vec3f,
+    uv0: vec2f,
+    uv1: vec2f,
+    // COLOR_0, or white.
+    color: vec4f,
+    // Area of the triangle.
+    area: f32,
+    material: u32,
+    // Index into `lights`, or NONE.
+    light: u32,
+    back_face: bool,
+}
+
+// gamma(7) = 7 eps / (1 - 7 eps), eps = 2^-24 (Pharr, Jakob, Humphreys 2023, section 6.8).
+const GAMMA_7: f32 = 4.1723254e-7;
+
+fn surface_at(ray: Ray, hit: Hit) -> Surface {
+    let triangle = load_triangle(hit.triangle);
+    let b = vec3f(hit.b0, hit.b1, hit.b2);
+    var s: Surface;
+    s.position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
+    s.position_error = GAMMA_7 * (abs(b.x * triangle.v0) + abs(b.y * triangle.v1) + abs(b.z * triangle.v2));
+    let cross_edges = triangle_cross(triangle);
+    let cross_length = stable_length(cross_edges);
+    s.normal = cross_edges / cross_length;
+    s.area = 0.5 * cross_length;
+    s.wo = -normalize(ray.direction);
+    s.material = triangle.material;
+    s.light = triangle.light;
+    s.back_face = dot(s.normal, ray.direction) > 0.0;
+    s.color = vec4f(1.0);
+    read_vertices(&s, triangle, hit.triangle, b);
+    return s;
+}
+
+// Edge cross product: twice the area, towards the side from which v0, v1, v2 turn left.
+fn triangle_cross(triangle: Triangle) -> vec3f {
+    return cross(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
+}
+
+// A length whose square may be out of range.
+fn stable_length(v: vec3f) -> f32 {
+    let largest = max_component(abs(v));
+    if (largest == 0.0) {
+        return 0.0;
+    }
+    return largest * length(v / largest);
+}
+
+// Interpolate what the scene's vertices carry, and set up the shading frame.
+fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, index: u32, b: vec3f) {
+    let geometric = (*s).normal;
+    var normal = geometric;
+    var tangent = vec4f(0.0);
+    if (VERTEX_STRIDE > 0u) {
+        let i0 = load_index(3u * index) * VERTEX_STRIDE;
+        let i1 = load_index(3u * index + 1u) * VERTEX_STRIDE;
+        let i2 = load_index(3u * index + 2u) * VERTEX_STRIDE;
+        if (HAS_NORMALS && (triangle.flags & TRIANGLE_FLAT) == 0u) {
+            normal = b.x * vertex_vec3(i0 + NORMAL_OFFSET) + b.y * vertex_vec3(i1 + NORMAL_OFFSET)
+                + b.z * vertex_vec3(i2 + NORMAL_OFFSET);
+        }
+        if (HAS_COLORS) {
+            (*s).color = interpolate_vec4(i0 + COLOR_OFFSET, i1 + COLOR_OFFSET, i2 + COLOR_OFFSET, b);
+        }
+        if (HAS_TANGENTS && (triangle.flags & TRIANGLE_TANGENTS) != 0u) {
+            tangent = interpolate_vec4(i0 + TANGENT_OFFSET, i1 + TANGENT_OFFSET, i2 + TANGENT_OFFSET, b);
+        }
+    }
+    let uv = texture_coordinates(index, b);
+    (*s).uv0 = uv.xy;
+    (*s).uv1 = uv.zw;
+    normal = normalize_or(normal, geometric);
+    if (HAS_NORMAL_TEXTURE) {
+        normal = normalize_or(perturb_normal(*s, normal, tangent), normal);
+    }
+    orient(s, normal);
+}
+
+// Turn both normals towards the ray's origin. A shading normal that faces away from it (at a
+// silhouette of a coarse mesh, or by a strong normal map) gives way to the geometric one.
+fn orient(s: ptr<function, Surface>, shading_normal: vec3f) {
+    let side = select(1.0, -1.0, (*s).back_face);
+    (*s).normal *= side;
+    var n = shading_normal * side;
+    if (dot(n, (*s).wo) <= 0.0) {
+        n = (*s).normal;
+    }
+    (*s).shading = frame_from_z(n);
+}
+
+fn perturb_normal(s: Surface, normal: vec3f, tangent: vec4f) -> vec3f {
+    let slot = materials[s.material].normal_texture;
+    if (slot.texture == NONE || tangent.w == 0.0) {
+        return normal;
+    }
+    let scale = materials[s.material].normal_scale;
+    let map = (sample_texture(slot, s.uv0, s.uv1).xyz * 2.0 - 1.0) * vec3f(scale, scale, 1.0);
+    // The interpolated tangent is used as it is, as mikktspace prescribes.
+    let bitangent = cross(normal, tangent.xyz) * sign(tangent.w);
+    return map.x * tangent.xyz + map.y * bitangent + map.z * normal;
+}
+
+fn normalize_or(v: vec3f, fallback: vec3f) -> vec3f {
+    let length_squared = dot(v, v);
+    if (length_squared > 1.0e-30) {
+        return v * inverseSqrt(length_squared);
+    }
+    return fallback;
+}
+
+// The point from which a ray leaves a surface towards w: outside of the error box of the hit, on
+// w's side (Pharr, Jakob, Humphreys 2023, section 6.8.6). No fixed epsilon: it scales with the scene.
+fn offset_origin(position: vec3f, position_error: vec3f, normal: vec3f, w: vec3f) -> vec3f {
+    let distance = dot(abs(normal), position_error);
+    let offset = select(distance, -distance, dot(w, normal) < 0.0) * normal;
+    let p = position + offset;
+    return vec3f(
+        round_away(p.x, offset.x),
+        round_away(p.y, offset.y),
+        round_away(p.z, offset.z),
+    );
+}
+
+fn round_away(x: f32, direction: f32) -> f32 {
+    if (direction > 0.0) {
+        return next_up(x);
+    }
+    if (direction < 0.0) {
+        return next_down(x);
+    }
+    return x;
+}

@@ -1,0 +1,208 @@
+// Structs shared with the host. Each is mirrored by a `repr(C)` struct in src/render/layout.rs;
+// names, offsets, sizes and strides are compared on every compile.
+
+// What stays the same for a whole render.
+struct Frame {
+    // Camera axes in the world: right, up, and back (the camera looks along -camera_z).
+    camera_x: vec3f,
+    width: u32,
+    camera_y: vec3f,
+    height: u32,
+    camera_z: vec3f,
+    // 0 perspective, 1 orthographic.
+    projection: u32,
+    // Half the film's size: tangents of half the field of view, or metres if orthographic.
+    half_extent: vec2f,
+    // Edges of the longest path.
+    max_depth: u32,
+    seed: u32,
+    // Number of 8x8 tiles in a row of tiles, and the step of the permutation that visits them.
+    tiles_x: u32,
+    tile_step: u32,
+    // First row of this band of the film and the number of its tiles.
+    first_row: u32,
+    tile_count: u32,
+    // Number of entries in `lights`.
+    light_count: u32,
+    // Index of the environment in `lights`, or NONE.
+    environment_light: u32,
+    environment_width: u32,
+    environment_height: u32,
+    // Multiplies the environment's texels.
+    environment_radiance: vec3f,
+    // Cosine and sine of the environment's turn about +Y.
+    environment_cos: f32,
+    environment_sin: f32,
+    punctual_count: u32,
+    pad0: u32,
+    pad1: u32,
+}
+
+// What one dispatch does.
+struct Dispatch {
+    // First work item (a tile's lane) of this dispatch.
+    first_item: u32,
+    // Number of work items.
+    item_count: u32,
+    // Samples that each pixel shall have when done.
+    target_count: u32,
+    // Index of the render's first sample, 64 bits.
+    first_sample_low: u32,
+    first_sample_high: u32,
+    // Only every lane_stride-th invocation works (see STEP_LIMIT in steps.wgsl).
+    lane_stride: u32,
+    pad0: u32,
+    pad1: u32,
+}
+
+// What a dispatch reports.
+struct Status {
+    // Pixels that have fewer samples than asked, because the driver's loop limit was near.
+    unfinished: atomic<u32>,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+// A pixel's sums over its samples, each as an unevaluated pair of floats (value + value_low).
+struct FilmPixel {
+    sum: vec3f,
+    // Samples taken, the non-finite ones among them.
+    count: u32,
+    sum_low: vec3f,
+    // Samples whose radiance was NaN or infinite; they are in no sum.
+    non_finite: u32,
+    // Sum of squares, for the variance.
+    square: vec3f,
+    // Rays traced, if COUNT_RAYS.
+    closest_rays: u32,
+    square_low: vec3f,
+    any_rays: u32,
+}
+
+// A node holds the boxes of its two children.
+// A child is a leaf of `count` triangles from `left`/`right` on, or, with count 0, a node.
+struct BvhNode {
+    left_min: vec3f,
+    left: u32,
+    left_max: vec3f,
+    left_count: u32,
+    right_min: vec3f,
+    right: u32,
+    right_max: vec3f,
+    right_count: u32,
+}
+
+// A triangle in the order of the BVH, relative to the camera's position.
+struct Triangle {
+    v0: vec3f,
+    material: u32,
+    v1: vec3f,
+    // TRIANGLE_* bits.
+    flags: u32,
+    v2: vec3f,
+    // Index into `lights` if it emits, else NONE.
+    light: u32,
+}
+
+// A use of a texture: uv' = matrix * uv + offset.
+struct TextureSlot {
+    matrix: vec4f,
+    offset: vec2f,
+    // Index into `textures`, or NONE.
+    texture: u32,
+    // Texture coordinate set, 0 or 1.
+    tex_coord: u32,
+}
+
+struct Material {
+    base_color: vec4f,
+    // Emitted radiance.
+    emissive: vec3f,
+    metallic: f32,
+    specular_color: vec3f,
+    roughness: f32,
+    // Dielectric reflectance at normal incidence, ((ior-1)/(ior+1))^2.
+    ior_f0: f32,
+    specular: f32,
+    normal_scale: f32,
+    alpha_cutoff: f32,
+    // MATERIAL_* bits.
+    flags: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+    base_color_texture: TextureSlot,
+    metallic_roughness_texture: TextureSlot,
+    normal_texture: TextureSlot,
+    emissive_texture: TextureSlot,
+    specular_texture: TextureSlot,
+    specular_color_texture: TextureSlot,
+}
+
+struct Texture {
+    // First word in the texel buffer.
+    first_word: u32,
+    width: u32,
+    height: u32,
+    // TEXTURE_* bits.
+    flags: u32,
+}
+
+// An entry of the alias table over all lights.
+struct Light {
+    // Keep this entry if the second random number is below, else take `alias`.
+    threshold: f32,
+    alias_index: u32,
+    // Probability that this light is chosen.
+    probability: f32,
+    // Kind in the top two bits (LIGHT_*), below them the index of the triangle or punctual light.
+    kind_and_index: u32,
+}
+
+struct PunctualLight {
+    position: vec3f,
+    // PUNCTUAL_*.
+    kind: u32,
+    // Unit vector along which the light shines.
+    direction: vec3f,
+    // 1 / range, 0 if it reaches everywhere.
+    inverse_range: f32,
+    // W/sr, or W/m^2 if directional.
+    intensity: vec3f,
+    // Cosine of the outer cone angle.
+    cos_outer: f32,
+    // 1 / (cos(inner) - cos(outer)).
+    spot_scale: f32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+const NONE: u32 = 0xffffffffu;
+
+const TRIANGLE_ALPHA: u32 = 1u;         // coverage must be evaluated
+const TRIANGLE_SINGLE_SIDED: u32 = 2u;  // camera rays pass its back face
+const TRIANGLE_FLAT: u32 = 4u;          // its mesh has no shading normals
+const TRIANGLE_TANGENTS: u32 = 8u;      // its mesh has tangents
+
+const MATERIAL_DOUBLE_SIDED: u32 = 1u;
+const MATERIAL_MASK: u32 = 2u;
+const MATERIAL_BLEND: u32 = 4u;
+const MATERIAL_UNLIT: u32 = 8u;
+
+const TEXTURE_WRAP_U_SHIFT: u32 = 0u;   // two bits: 0 clamp, 1 mirror, 2 repeat
+const TEXTURE_WRAP_V_SHIFT: u32 = 2u;
+const TEXTURE_LINEAR: u32 = 16u;        // bilinear filter
+const TEXTURE_16_BIT: u32 = 32u;        // two words a texel, already linear
+const TEXTURE_SRGB: u32 = 64u;          // RGB is sRGB-encoded, 8 bits
+
+const LIGHT_TRIANGLE: u32 = 0u;
+const LIGHT_PUNCTUAL: u32 = 1u;
+const LIGHT_ENVIRONMENT: u32 = 2u;
+const LIGHT_KIND_SHIFT: u32 = 30u;
+const LIGHT_INDEX_MASK: u32 = 0x3fffffffu;
+
+const PUNCTUAL_POINT: u32 = 0u;
+const PUNCTUAL_SPOT: u32 = 1u;
+const PUNCTUAL_DIRECTIONAL: u32 = 2u;

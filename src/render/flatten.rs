@@ -1,0 +1,120 @@
+//! From placed meshes to one list of world-space triangles around the camera.
+//!
+//! Transforms are applied in f64 and positions are taken relative to the camera before they are
+//! rounded to f32, so a scene far from the origin keeps its precision where the picture is taken.
+
+use glam::{DMat3, DVec3, Vec3};
+
+use super::layout::{
+    TRIANGLE_ALPHA, TRIANGLE_FLAT, TRIANGLE_SINGLE_SIDED, TRIANGLE_TANGENTS,
+};
+use super::vertex_format::VertexFormat;
+use crate::scene::{AlphaMode, Instance, Material, Mesh, Scene};
+
+/// All triangles of a scene, in the order of instances and their indices.
+#[derive(Debug, Clone, Default)]
+pub struct FlatGeometry {
+    /// Vertices relative to the origin that was asked for; all finite.
+    pub triangles: Vec<[Vec3; 3]>,
+    /// Indices into the vertices of `words`, three a triangle.
+    pub indices: Vec<[u32; 3]>,
+    /// Material of each triangle.
+    pub materials: Vec<u32>,
+    /// `TRIANGLE_*` bits of each triangle.
+    pub flags: Vec<u32>,
+    /// Vertex attributes, [`VertexFormat::stride`] words a vertex.
+    pub words: Vec<f32>,
+    /// Triangles left out because a vertex is NaN, infinite or out of f32's range.
+    pub dropped: u64,
+}
+
+impl FlatGeometry {
+    /// Flattens a validated scene around `origin` (metres, world).
+    pub fn new(scene: &Scene, format: &VertexFormat, origin: DVec3) -> Self {
+        let mut flat = Self::default();
+        let count = scene
+            .instances
+            .iter()
+            .map(|i| scene.meshes[i.mesh].indices.len())
+            .sum();
+        flat.triangles.reserve_exact(count);
+        flat.indices.reserve_exact(count);
+        flat.materials.reserve_exact(count);
+        flat.flags.reserve_exact(count);
+        for instance in &scene.instances {
+            let mesh = &scene.meshes[instance.mesh];
+            flat.add(instance, mesh, &scene.materials[mesh.material], format, origin);
+        }
+        flat
+    }
+
+    fn add(
+        &mut self,
+        instance: &Instance,
+        mesh: &Mesh,
+        material: &Material,
+        format: &VertexFormat,
+        origin: DVec3,
+    ) {
+        let first_vertex = self.words.len().checked_div(format.stride as usize).unwrap_or(0) as u32;
+        let positions: Vec<Vec3> = mesh
+            .positions
+            .iter()
+            .map(|p| (instance.to_world.transform_point3(p.as_dvec3()) - origin).as_vec3())
+            .collect();
+        let linear = DMat3::from_mat4(instance.to_world);
+        let mirrored = linear.determinant() < 0.0;
+        let flags = triangle_flags(mesh, material, format);
+        for &[a, b, c] in &mesh.indices {
+            // A mirror turns windings round: the front stays the front.
+            let corner = if mirrored { [a, c, b] } else { [a, b, c] };
+            let triangle = corner.map(|i| positions[i as usize]);
+            if !triangle.iter().all(|v| v.is_finite()) {
+                self.dropped += 1;
+                continue;
+            }
+            self.triangles.push(triangle);
+            self.indices.push(corner.map(|i| first_vertex + i));
+            self.materials.push(mesh.material as u32);
+            self.flags.push(flags);
+        }
+        format.append(&mut self.words, mesh, &linear);
+    }
+
+    /// The triangles reordered, `order[new] = old`.
+    pub fn reorder(&mut self, order: &[u32]) {
+        self.triangles = order.iter().map(|&i| self.triangles[i as usize]).collect();
+        self.indices = order.iter().map(|&i| self.indices[i as usize]).collect();
+        self.materials = order.iter().map(|&i| self.materials[i as usize]).collect();
+        self.flags = order.iter().map(|&i| self.flags[i as usize]).collect();
+    }
+
+    /// Radius of a sphere around the middle of the bounds that holds everything, metres.
+    pub fn radius(&self) -> f64 {
+        let (low, high) = self.triangles.iter().flatten().fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), v| (low.min(v.as_dvec3()), high.max(v.as_dvec3())),
+        );
+        if self.triangles.is_empty() {
+            return 0.0;
+        }
+        0.5 * (high - low).length()
+    }
+}
+
+fn triangle_flags(mesh: &Mesh, material: &Material, format: &VertexFormat) -> u32 {
+    let mut flags = 0;
+    if material.alpha_mode != AlphaMode::Opaque {
+        flags |= TRIANGLE_ALPHA;
+    }
+    if !material.double_sided {
+        flags |= TRIANGLE_SINGLE_SIDED;
+    }
+    if mesh.normals.is_empty() {
+        flags |= TRIANGLE_FLAT;
+    }
+    if format.tangents.is_some() && !mesh.tangents.is_empty() {
+        flags |= TRIANGLE_TANGENTS;
+    }
+    flags
+}

@@ -1,0 +1,347 @@
+//! Structs shared with the shaders: the mirror of `shaders/types.wgsl`.
+//!
+//! [`layouts`] describes them to the shader compiler, which compares them with the text that is
+//! compiled: users edit shaders.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::accel::BvhNode;
+use crate::shader::{FieldLayout, StructLayout};
+
+/// "There is none", for indices.
+pub const NONE: u32 = u32::MAX;
+
+/// [`Triangle::flags`]: coverage must be evaluated.
+pub const TRIANGLE_ALPHA: u32 = 1;
+/// [`Triangle::flags`]: camera rays pass its back face.
+pub const TRIANGLE_SINGLE_SIDED: u32 = 2;
+/// [`Triangle::flags`]: no shading normals.
+pub const TRIANGLE_FLAT: u32 = 4;
+/// [`Triangle::flags`]: its mesh has tangents.
+pub const TRIANGLE_TANGENTS: u32 = 8;
+
+/// [`Material::flags`]: both faces emit.
+pub const MATERIAL_DOUBLE_SIDED: u32 = 1;
+/// [`Material::flags`]: alpha is a mask.
+pub const MATERIAL_MASK: u32 = 2;
+/// [`Material::flags`]: alpha is coverage.
+pub const MATERIAL_BLEND: u32 = 4;
+/// [`Material::flags`]: constant colour.
+pub const MATERIAL_UNLIT: u32 = 8;
+
+/// [`Texture::flags`]: bilinear filter.
+pub const TEXTURE_LINEAR: u32 = 16;
+/// [`Texture::flags`]: two words a texel, linear.
+pub const TEXTURE_16_BIT: u32 = 32;
+/// [`Texture::flags`]: RGB is sRGB-encoded.
+pub const TEXTURE_SRGB: u32 = 64;
+
+/// Kind of a [`Light`]: an emissive triangle.
+pub const LIGHT_TRIANGLE: u32 = 0;
+/// Kind of a [`Light`]: a punctual light.
+pub const LIGHT_PUNCTUAL: u32 = 1;
+/// Kind of a [`Light`]: the environment.
+pub const LIGHT_ENVIRONMENT: u32 = 2;
+/// Where the kind lies in [`Light::kind_and_index`].
+pub const LIGHT_KIND_SHIFT: u32 = 30;
+
+/// Declares a `repr(C)` struct together with its description for the shader compiler.
+macro_rules! shared_struct {
+    ($(#[$meta:meta])* $name:ident { $($(#[$field_meta:meta])* $field:ident: $type:ty,)* }) => {
+        $(#[$meta])*
+        #[repr(C)]
+        #[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+        pub struct $name { $($(#[$field_meta])* pub $field: $type,)* }
+
+        impl $name {
+            fn layout() -> StructLayout {
+                StructLayout {
+                    name: stringify!($name),
+                    size: size_of::<$name>(),
+                    fields: vec![$(FieldLayout {
+                        name: stringify!($field),
+                        offset: std::mem::offset_of!($name, $field),
+                        size: size_of::<$type>(),
+                    },)*],
+                }
+            }
+        }
+    };
+}
+
+shared_struct! {
+    /// What stays the same for a whole render; see `shaders/types.wgsl` for each field.
+    Frame {
+        /// Right axis of the camera, world.
+        camera_x: [f32; 3],
+        /// Pixels.
+        width: u32,
+        /// Up axis.
+        camera_y: [f32; 3],
+        /// Pixels.
+        height: u32,
+        /// Back axis.
+        camera_z: [f32; 3],
+        /// 0 perspective, 1 orthographic.
+        projection: u32,
+        /// Half the film's size.
+        half_extent: [f32; 2],
+        /// Edges of the longest path.
+        max_depth: u32,
+        /// Seed of the sampler.
+        seed: u32,
+        /// Tiles in a row of tiles.
+        tiles_x: u32,
+        /// Step of the tile permutation, coprime to `tile_count`.
+        tile_step: u32,
+        /// First row of the band.
+        first_row: u32,
+        /// Tiles of the band.
+        tile_count: u32,
+        /// Entries of the light table.
+        light_count: u32,
+        /// Index of the environment in it, or [`NONE`].
+        environment_light: u32,
+        /// Columns of the environment's picture.
+        environment_width: u32,
+        /// Rows of the environment's picture.
+        environment_height: u32,
+        /// Factor of the environment's radiance.
+        environment_radiance: [f32; 3],
+        /// Cosine of the environment's turn.
+        environment_cos: f32,
+        /// Sine of the environment's turn.
+        environment_sin: f32,
+        /// Number of punctual lights.
+        punctual_count: u32,
+        /// Unused.
+        pad0: u32,
+        /// Unused.
+        pad1: u32,
+    }
+}
+
+shared_struct! {
+    /// What one dispatch does.
+    Dispatch {
+        /// First work item.
+        first_item: u32,
+        /// Number of work items.
+        item_count: u32,
+        /// Samples that each pixel shall have.
+        target_count: u32,
+        /// Index of the first sample, low half.
+        first_sample_low: u32,
+        /// Index of the first sample, high half.
+        first_sample_high: u32,
+        /// Only every so-many-th invocation works.
+        lane_stride: u32,
+        /// Unused.
+        pad0: u32,
+        /// Unused.
+        pad1: u32,
+    }
+}
+
+shared_struct! {
+    /// What a dispatch reports.
+    Status {
+        /// Pixels with fewer samples than asked.
+        unfinished: u32,
+        /// Unused.
+        pad0: u32,
+        /// Unused.
+        pad1: u32,
+        /// Unused.
+        pad2: u32,
+    }
+}
+
+shared_struct! {
+    /// A pixel's sums, each an unevaluated pair of floats.
+    FilmPixel {
+        /// Sum of radiance, high part.
+        sum: [f32; 3],
+        /// Samples taken.
+        count: u32,
+        /// Sum of radiance, low part.
+        sum_low: [f32; 3],
+        /// Samples that were NaN or infinite, in no sum.
+        non_finite: u32,
+        /// Sum of squares, high part.
+        square: [f32; 3],
+        /// Closest-hit rays traced, if counted.
+        closest_rays: u32,
+        /// Sum of squares, low part.
+        square_low: [f32; 3],
+        /// Any-hit rays traced, if counted.
+        any_rays: u32,
+    }
+}
+
+shared_struct! {
+    /// A triangle in the order of the BVH, relative to the camera's position.
+    Triangle {
+        /// First vertex.
+        v0: [f32; 3],
+        /// Index of its material.
+        material: u32,
+        /// Second vertex.
+        v1: [f32; 3],
+        /// `TRIANGLE_*` bits.
+        flags: u32,
+        /// Third vertex.
+        v2: [f32; 3],
+        /// Index into the light table, or [`NONE`].
+        light: u32,
+    }
+}
+
+shared_struct! {
+    /// A use of a texture.
+    TextureSlot {
+        /// Columns of the matrix that maps texture coordinates.
+        matrix: [f32; 4],
+        /// Added after it.
+        offset: [f32; 2],
+        /// Index of the texture, or [`NONE`].
+        texture: u32,
+        /// Set of texture coordinates.
+        tex_coord: u32,
+    }
+}
+
+shared_struct! {
+    /// A material.
+    Material {
+        /// Linear, with alpha.
+        base_color: [f32; 4],
+        /// Emitted radiance.
+        emissive: [f32; 3],
+        /// In [0, 1].
+        metallic: f32,
+        /// Colour at normal incidence.
+        specular_color: [f32; 3],
+        /// Perceptual roughness.
+        roughness: f32,
+        /// ((ior − 1)/(ior + 1))².
+        ior_f0: f32,
+        /// Strength of the dielectric specular lobe.
+        specular: f32,
+        /// Scale of the normal map.
+        normal_scale: f32,
+        /// Of a mask.
+        alpha_cutoff: f32,
+        /// `MATERIAL_*` bits.
+        flags: u32,
+        /// Unused.
+        pad0: u32,
+        /// Unused.
+        pad1: u32,
+        /// Unused.
+        pad2: u32,
+        /// RGB sRGB, A linear.
+        base_color_texture: TextureSlot,
+        /// G roughness, B metallic.
+        metallic_roughness_texture: TextureSlot,
+        /// Tangent-space normals.
+        normal_texture: TextureSlot,
+        /// RGB sRGB.
+        emissive_texture: TextureSlot,
+        /// A specular.
+        specular_texture: TextureSlot,
+        /// RGB sRGB.
+        specular_color_texture: TextureSlot,
+    }
+}
+
+shared_struct! {
+    /// A texture: where its texels are and how they are read.
+    Texture {
+        /// First word of its texels.
+        first_word: u32,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// `TEXTURE_*` bits.
+        flags: u32,
+    }
+}
+
+shared_struct! {
+    /// An entry of the alias table over all lights.
+    Light {
+        /// Keep below, else take the alias.
+        threshold: f32,
+        /// The other entry.
+        alias_index: u32,
+        /// Probability of this light.
+        probability: f32,
+        /// Kind and index.
+        kind_and_index: u32,
+    }
+}
+
+shared_struct! {
+    /// A punctual light.
+    PunctualLight {
+        /// Position, relative to the camera.
+        position: [f32; 3],
+        /// 0 point, 1 spot, 2 directional.
+        kind: u32,
+        /// Unit vector along which it shines.
+        direction: [f32; 3],
+        /// 1 / range, or 0.
+        inverse_range: f32,
+        /// W·sr⁻¹ or W·m⁻².
+        intensity: [f32; 3],
+        /// Of the outer cone.
+        cos_outer: f32,
+        /// 1 / (cos inner − cos outer).
+        spot_scale: f32,
+        /// Unused.
+        pad0: u32,
+        /// Unused.
+        pad1: u32,
+        /// Unused.
+        pad2: u32,
+    }
+}
+
+/// Every struct that host and shader share.
+pub fn layouts() -> Vec<StructLayout> {
+    vec![
+        Frame::layout(),
+        Dispatch::layout(),
+        Status::layout(),
+        FilmPixel::layout(),
+        bvh_node_layout(),
+        Triangle::layout(),
+        TextureSlot::layout(),
+        Material::layout(),
+        Texture::layout(),
+        Light::layout(),
+        PunctualLight::layout(),
+    ]
+}
+
+fn bvh_node_layout() -> StructLayout {
+    macro_rules! fields {
+        ($($field:ident: $size:expr,)*) => {
+            vec![$(FieldLayout {
+                name: stringify!($field),
+                offset: std::mem::offset_of!(BvhNode, $field),
+                size: $size,
+            },)*]
+        };
+    }
+    StructLayout {
+        name: "BvhNode",
+        size: size_of::<BvhNode>(),
+        fields: fields! {
+            left_min: 12, left: 4, left_max: 12, left_count: 4,
+            right_min: 12, right: 4, right_max: 12, right_count: 4,
+        },
+    }
+}
