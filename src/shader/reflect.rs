@@ -1,0 +1,88 @@
+//! What an entry point binds.
+
+use naga::{AddressSpace, GlobalVariable, Handle, Module, StorageAccess, Type, TypeInner};
+
+use super::ShaderError;
+use super::naga_report::Reporter;
+
+/// A buffer that an entry point uses.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Binding {
+    /// Descriptor set.
+    pub group: u32,
+    /// Binding in the set.
+    pub binding: u32,
+    /// The variable's name in the shader.
+    pub name: String,
+    /// How it is bound.
+    pub kind: BindingKind,
+    /// The struct that it holds, or whose array it holds; none for other types.
+    pub element: Option<String>,
+}
+
+/// How a buffer is bound.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BindingKind {
+    /// A storage buffer that the shader only reads.
+    StorageRead,
+    /// A storage buffer that the shader may write.
+    StorageReadWrite,
+    /// A uniform buffer.
+    Uniform,
+}
+
+/// The bindings of a module reduced to one entry point, sorted by group and binding.
+pub(super) fn bindings(module: &Module, report: Reporter<'_>) -> Result<Vec<Binding>, ShaderError> {
+    let mut bindings = Vec::new();
+    for (handle, variable) in module.global_variables.iter() {
+        bindings.extend(reflect(module, handle, variable, report)?);
+    }
+    bindings.sort_by_key(|b| (b.group, b.binding));
+    Ok(bindings)
+}
+
+fn reflect(
+    module: &Module,
+    handle: Handle<GlobalVariable>,
+    variable: &GlobalVariable,
+    report: Reporter<'_>,
+) -> Result<Option<Binding>, ShaderError> {
+    let name = variable.name.clone().unwrap_or_default();
+    let kind = match variable.space {
+        AddressSpace::Private | AddressSpace::WorkGroup | AddressSpace::Function => {
+            return Ok(None);
+        }
+        AddressSpace::Uniform => BindingKind::Uniform,
+        AddressSpace::Storage { access } if access.contains(StorageAccess::STORE) => {
+            BindingKind::StorageReadWrite
+        }
+        AddressSpace::Storage { .. } => BindingKind::StorageRead,
+        _ => {
+            let message = format!("`{name}`: only storage and uniform buffers can be bound");
+            let place = module.global_variables.get_span(handle).to_range();
+            let diagnostic = report.at(message, place.unwrap_or(0..0));
+            return Err(ShaderError::Validation(Box::new(diagnostic)));
+        }
+    };
+    Ok(variable.binding.map(|at| Binding {
+        group: at.group,
+        binding: at.binding,
+        name,
+        kind,
+        element: element(module, variable.ty),
+    }))
+}
+
+fn element(module: &Module, ty: Handle<Type>) -> Option<String> {
+    match &module.types[ty] {
+        Type {
+            name,
+            inner: TypeInner::Struct { .. },
+        } => name.clone(),
+        Type {
+            inner: TypeInner::Array { base, .. },
+            ..
+        } => element(module, *base),
+        _ => None,
+    }
+}
