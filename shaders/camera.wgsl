@@ -1,15 +1,8 @@
 // Cameras. The world is relative to the camera's position, so rays start at or near the origin.
 
 #include "bindings.wgsl"
+#include "ray.wgsl"
 
-struct Ray {
-    origin: vec3f,
-    // Hits at t >= t_max do not count.
-    t_max: f32,
-    direction: vec3f,
-}
-
-const T_INFINITE: f32 = 3.0e38;
 const PROJECTION_ORTHOGRAPHIC: u32 = 1u;
 
 // The ray through a point of the pixel's square; `offset` in [0, 1)^2, from the top left.

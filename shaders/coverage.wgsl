@@ -3,6 +3,7 @@
 #include "bindings.wgsl"
 #include "vertex.wgsl"
 #include "texture.wgsl"
+#include "sampler.wgsl"
 
 // The fraction of light that a surface stops at a point: 0 or 1 if masked, alpha if blended.
 fn coverage(triangle: Triangle, index: u32, b: vec3f) -> f32 {

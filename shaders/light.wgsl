@@ -55,12 +55,17 @@ fn sample_light(s: Surface, sampler: ptr<function, Sampler>) -> LightSample {
     return sample;
 }
 
-// Fraction of a light sample's radiance that reaches the surface.
-fn transmittance_to_light(s: Surface, light: LightSample, seed: u32) -> f32 {
+// 1 if a light sample's radiance reaches the surface, else 0; blended surfaces in between decide
+// by chance.
+fn visibility_of_light(s: Surface, light: LightSample, seed: u32) -> f32 {
     let origin = offset_origin(s.position, s.position_error, s.normal, light.wi);
     if (light.at_infinity) {
-        return transmittance(Ray(origin, T_INFINITE, light.wi), seed);
+        return visibility(Ray(origin, T_INFINITE, light.wi), seed);
     }
     let target_point = offset_origin(light.position, light.position_error, light.normal, -light.wi);
-    return transmittance(Ray(origin, 1.0, target_point - origin), seed);
+    return visibility(Ray(origin, 1.0, target_point - origin), seed);
+}
+
+fn visibility(ray: Ray, seed: u32) -> f32 {
+    return select(1.0, 0.0, occluded(ray, seed));
 }

@@ -16,28 +16,34 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let position = film_position(dispatch.first_item + item);
-    if (position.x >= frame.width || position.y >= frame.height) {
+    if (position.x >= frame.width || position.y >= frame.end_row) {
         return;
     }
     let index = (position.y - frame.first_row) * frame.width + position.x;
     var pixel = film[index];
+    let count_before = pixel.count;
     while (pixel.count < dispatch.target_count) {
-        if (count_step()) {
+        if (count_step() || no_room_for_sample()) {
             break;
         }
+        let steps_before = steps;
         // Draw one sample of the pixel's square.
         let sample_index = add_u64(dispatch.first_sample_low, dispatch.first_sample_high, pixel.count);
-        var sampler = sampler_begin(position, sample_index, frame.seed);
+        var random = sampler_begin(position, sample_index, frame.seed);
         reset_ray_counts();
-        let L = Li(camera_ray(position, next_2d(&sampler)), &sampler);
+        let L = Li(camera_ray(position, next_2d(&random)), &random);
         if (out_of_steps()) {
             break;
         }
+        note_sample_steps(steps_before);
         film_add(&pixel, L);
     }
     film[index] = pixel;
     if (COUNT_STEPS && pixel.count < dispatch.target_count) {
         atomicAdd(&status.unfinished, 1u);
+        if (pixel.count > count_before) {
+            atomicAdd(&status.advanced, 1u);
+        }
     }
 }
 

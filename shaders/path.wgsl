@@ -95,7 +95,7 @@ fn sample_direct(s: Surface, bsdf: Bsdf, wo: vec3f, sampler: ptr<function, Sampl
     if (all(contribution == vec3f(0.0))) {
         return vec3f(0.0);
     }
-    return contribution * transmittance_to_light(s, light, seed);
+    return contribution * visibility_of_light(s, light, seed);
 }
 
 // Weight of an emitter that a BSDF sample (or the camera) hit.

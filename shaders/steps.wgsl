@@ -1,12 +1,14 @@
-// Counting of loop iterations. Mesa's lavapipe before 24 silently leaves every loop once an
-// invocation's SIMD group has gone round its loops 65,535 times in one dispatch. Where the host
-// measured such a limit, it sets COUNT_STEPS and STEP_LIMIT; the lanes of a group together then
-// stay below the driver's limit. A sample that would pass it is given up and drawn again by the
-// next dispatch, so no picture is ever cut short.
+// Counting of loop iterations. Mesa's lavapipe before 24 silently leaves every loop once the SIMD
+// group of an invocation has gone round its loops 65,535 times in one dispatch. Where the host
+// measured such a limit it sets COUNT_STEPS and a step_limit a lane, so low that the lanes of a
+// group together stay below the driver's. A sample that would pass it is given up and drawn again
+// by the next dispatch: no picture is cut short.
 
-#include "features.wgsl"
+#include "bindings.wgsl"
 
 var<private> steps: u32 = 0u;
+// Steps of the costliest sample so far.
+var<private> longest_sample: u32 = 0u;
 var<private> closest_rays: u32 = 0u;
 var<private> any_rays: u32 = 0u;
 
@@ -16,12 +18,23 @@ fn count_step() -> bool {
         return false;
     }
     steps += 1u;
-    return steps > STEP_LIMIT;
+    return steps > dispatch.step_limit;
 }
 
 // Whether the sample in flight must be given up.
 fn out_of_steps() -> bool {
-    return COUNT_STEPS && steps > STEP_LIMIT;
+    return COUNT_STEPS && steps > dispatch.step_limit;
+}
+
+// Whether another sample like the longest so far would not fit.
+fn no_room_for_sample() -> bool {
+    return COUNT_STEPS && steps + longest_sample > dispatch.step_limit;
+}
+
+fn note_sample_steps(before: u32) {
+    if (COUNT_STEPS) {
+        longest_sample = max(longest_sample, steps - before);
+    }
 }
 
 fn reset_ray_counts() {

@@ -35,7 +35,7 @@ const GAMMA_7: f32 = 4.1723254e-7;
 
 fn surface_at(ray: Ray, hit: Hit) -> Surface {
     let triangle = load_triangle(hit.triangle);
-    let b = vec3f(hit.b0, hit.b1, hit.b2);
+    let b = hit.b;
     var s: Surface;
     s.position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
     s.position_error = GAMMA_7 * (abs(b.x * triangle.v0) + abs(b.y * triangle.v1) + abs(b.z * triangle.v2));
@@ -46,7 +46,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
     s.wo = -normalize(ray.direction);
     s.material = triangle.material;
     s.light = triangle.light;
-    s.back_face = dot(s.normal, ray.direction) > 0.0;
+    s.back_face = hit.back_face;
     s.color = vec4f(1.0);
     read_vertices(&s, triangle, hit.triangle, b);
     return s;

@@ -34,8 +34,9 @@ struct Frame {
     environment_cos: f32,
     environment_sin: f32,
     punctual_count: u32,
+    // The row after the last one of this band.
+    end_row: u32,
     pad0: u32,
-    pad1: u32,
 }
 
 // What one dispatch does.
@@ -49,17 +50,19 @@ struct Dispatch {
     // Index of the render's first sample, 64 bits.
     first_sample_low: u32,
     first_sample_high: u32,
-    // Only every lane_stride-th invocation works (see STEP_LIMIT in steps.wgsl).
+    // Only every lane_stride-th invocation works (see steps.wgsl).
     lane_stride: u32,
+    // Loop iterations that a lane may make, if COUNT_STEPS.
+    step_limit: u32,
     pad0: u32,
-    pad1: u32,
 }
 
 // What a dispatch reports.
 struct Status {
     // Pixels that have fewer samples than asked, because the driver's loop limit was near.
     unfinished: atomic<u32>,
-    pad0: u32,
+    // Those among them that gained a sample all the same.
+    advanced: atomic<u32>,
     pad1: u32,
     pad2: u32,
 }

@@ -18,5 +18,5 @@ fn Li(camera_ray: Ray, sampler: ptr<function, Sampler>) -> vec3f {
         return vec3f(0.0);
     }
     let origin = offset_origin(s.position, s.position_error, s.normal, wi);
-    return vec3f(transmittance(Ray(origin, AO_DISTANCE, wi), seed ^ 1u));
+    return select(vec3f(1.0), vec3f(0.0), occluded(Ray(origin, AO_DISTANCE, wi), seed ^ 1u));
 }

@@ -69,7 +69,7 @@ fn sum_punctual_lights(s: Surface, bsdf: Bsdf, wo: vec3f) -> vec3f {
         let light = punctual_sample(s, i);
         let wi = to_local(s.shading, light.wi);
         if (light.pdf > 0.0 && wi.z > 0.0 && dot(light.wi, s.normal) > 0.0) {
-            sum += bsdf_eval(bsdf, wo, wi) * light.weight * transmittance_to_light(s, light, 0u);
+            sum += bsdf_eval(bsdf, wo, wi) * light.weight * visibility_of_light(s, light, 0u);
         }
     }
     return sum;

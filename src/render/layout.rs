@@ -114,10 +114,10 @@ shared_struct! {
         environment_sin: f32,
         /// Number of punctual lights.
         punctual_count: u32,
+        /// The row after the last one of the band.
+        end_row: u32,
         /// Unused.
         pad0: u32,
-        /// Unused.
-        pad1: u32,
     }
 }
 
@@ -136,10 +136,10 @@ shared_struct! {
         first_sample_high: u32,
         /// Only every so-many-th invocation works.
         lane_stride: u32,
+        /// Loop iterations that a lane may make, if they are counted.
+        step_limit: u32,
         /// Unused.
         pad0: u32,
-        /// Unused.
-        pad1: u32,
     }
 }
 
@@ -148,8 +148,8 @@ shared_struct! {
     Status {
         /// Pixels with fewer samples than asked.
         unfinished: u32,
-        /// Unused.
-        pad0: u32,
+        /// Those among them that gained a sample.
+        advanced: u32,
         /// Unused.
         pad1: u32,
         /// Unused.

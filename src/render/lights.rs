@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::alias::alias_table;
 use super::emission::luminance;
-use super::layout::{self, LIGHT_ENVIRONMENT, LIGHT_KIND_SHIFT, LIGHT_PUNCTUAL, LIGHT_TRIANGLE, NONE};
+use super::layout::{self, LIGHT_ENVIRONMENT, LIGHT_KIND_SHIFT, LIGHT_PUNCTUAL, LIGHT_TRIANGLE};
 use crate::scene::{LightKind, PunctualLight};
 
 /// Every light with its power, before the table is made.
@@ -116,5 +116,8 @@ pub fn punctual(light: &PunctualLight, origin: DVec3) -> layout::PunctualLight {
     }
 }
 
-/// [`NONE`] for "not in the table".
-pub const NO_LIGHT: u32 = NONE;
+
+/// Whether an entry of the table is a punctual light.
+pub fn is_punctual(light: &layout::Light) -> bool {
+    light.kind_and_index >> LIGHT_KIND_SHIFT == LIGHT_PUNCTUAL
+}

@@ -1,1 +1,33 @@
-//! render
+//! From a scene to a picture: preparation, upload, the progressive loop, the film.
+//!
+//! [`Prepared`] -> [`GpuScene`] -> [`Renderer`] -> [`Film`].
+
+mod alias;
+mod band;
+mod emission;
+mod environment;
+mod error;
+mod film;
+mod flatten;
+mod frame;
+mod gpu_scene;
+pub mod layout;
+mod lights;
+mod materials;
+mod paged;
+mod prepared;
+pub mod program;
+mod renderer;
+mod settings;
+mod textures;
+mod vertex_format;
+
+pub use alias::{AliasEntry, alias_table};
+pub use environment::EnvironmentTable;
+pub use error::RenderError;
+pub use film::Film;
+pub use gpu_scene::GpuScene;
+pub use paged::paged_wgsl;
+pub use prepared::Prepared;
+pub use renderer::{Progress, Renderer};
+pub use settings::Settings;

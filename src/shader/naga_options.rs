@@ -3,6 +3,7 @@
 use naga::back::spv;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::Module;
 
 /// What a shader may use beyond core WGSL, fixed so that a shader that compiles here compiles for
 /// every device: subgroup operations (in Vulkan 1.1; the device says which) and half floats packed
@@ -25,7 +26,7 @@ pub(super) fn validator() -> Validator {
 /// neighbour and overwrite it: a wrong picture that looks right.)
 ///
 /// Names are always written, because [`super::no_contraction`] finds functions by them.
-pub(super) fn writer_options(checked: bool) -> spv::Options<'static> {
+pub(super) fn writer_options(module: &Module, checked: bool) -> spv::Options<'static> {
     let policy = match checked {
         true => BoundsCheckPolicy::ReadZeroSkipWrite,
         false => BoundsCheckPolicy::Unchecked,
@@ -38,6 +39,7 @@ pub(super) fn writer_options(checked: bool) -> spv::Options<'static> {
         lang_version: SPIRV_VERSION,
         flags: spv::WriterFlags::DEBUG,
         fake_missing_bindings: false,
+        binding_map: binding_map(module),
         bounds_check_policies: BoundsCheckPolicies {
             index: policy,
             buffer: policy,
@@ -50,4 +52,21 @@ pub(super) fn writer_options(checked: bool) -> spv::Options<'static> {
         emit_int_div_checks: checked,
         ..spv::Options::default()
     }
+}
+
+/// Every binding keeps the set and the number that the shader gives it.
+fn binding_map(module: &Module) -> spv::BindingMap {
+    module
+        .global_variables
+        .iter()
+        .filter_map(|(_, variable)| variable.binding)
+        .map(|binding| {
+            let info = spv::BindingInfo {
+                descriptor_set: binding.group,
+                binding: binding.binding,
+                binding_array_size: None,
+            };
+            (binding, info)
+        })
+        .collect()
 }

@@ -1,0 +1,95 @@
+//! A prepared scene on a device.
+
+use super::error::RenderError;
+use super::paged::PagedBuffer;
+use super::prepared::Prepared;
+use super::textures::srgb_table;
+use crate::gpu::{Buffer, Device, GpuError};
+
+/// First binding of the paged buffers; those below are in `shaders/bindings.wgsl`.
+pub const FIRST_PAGED_BINDING: u32 = 16;
+
+/// The buffers of a scene.
+pub struct GpuScene {
+    /// Fixed buffers by binding number.
+    fixed: Vec<(u32, Buffer)>,
+    /// Large arrays, in the order of their bindings.
+    paged: Vec<PagedBuffer>,
+}
+
+impl GpuScene {
+    /// Uploads everything.
+    ///
+    /// # Errors
+    /// The device's memory or number of bindings does not suffice.
+    pub fn upload(device: &Device, scene: &Prepared) -> Result<Self, RenderError> {
+        let paged = paged_buffers(device, scene)?;
+        let pages: usize = paged.iter().map(|p| p.pages().len()).sum();
+        let limit = device.info().max_buffers.saturating_sub(FIRST_PAGED_BINDING);
+        if pages as u64 > u64::from(limit) {
+            return Err(RenderError::TooMany {
+                what: "pages of device buffers",
+                count: pages as u64,
+                limit: u64::from(limit),
+            });
+        }
+        Ok(Self {
+            fixed: fixed_buffers(device, scene)?,
+            paged,
+        })
+    }
+
+    /// Every buffer with its binding number.
+    pub fn bindings(&self) -> Vec<(u32, &Buffer)> {
+        let pages = self.paged.iter().flat_map(|p| p.pages());
+        self.fixed
+            .iter()
+            .map(|(binding, buffer)| (*binding, buffer))
+            .chain((FIRST_PAGED_BINDING..).zip(pages))
+            .collect()
+    }
+
+    /// The generated `buffers.wgsl`.
+    pub fn buffers_wgsl(&self) -> String {
+        let mut binding = FIRST_PAGED_BINDING;
+        let mut text = String::from("// Generated: large arrays, split over pages where the device asks for it.\n");
+        for buffer in &self.paged {
+            text += &buffer.wgsl(binding);
+            binding += buffer.pages().len() as u32;
+        }
+        text
+    }
+
+    /// Bytes of data by buffer.
+    pub fn bytes(&self) -> u64 {
+        let fixed: u64 = self.fixed.iter().map(|(_, b)| b.bytes()).sum();
+        fixed + self.paged.iter().map(PagedBuffer::bytes).sum::<u64>()
+    }
+}
+
+fn fixed_buffers(device: &Device, scene: &Prepared) -> Result<Vec<(u32, Buffer)>, GpuError> {
+    Ok(vec![
+        (4, device.buffer_with("materials", &scene.materials)?),
+        (5, device.buffer_with("textures", &scene.textures.textures)?),
+        (6, device.buffer_with("lights", &scene.lights)?),
+        (7, device.buffer_with("punctual lights", &scene.punctual)?),
+        (8, device.buffer_with("sRGB table", &srgb_table())?),
+    ])
+}
+
+fn paged_buffers(device: &Device, scene: &Prepared) -> Result<Vec<PagedBuffer>, GpuError> {
+    let up = PagedBuffer::upload::<u32>;
+    let environment = &scene.environment;
+    let indices = scene.indices.as_flattened();
+    // Indices are read only to find a vertex's attributes.
+    let indices = if scene.vertex_format.stride == 0 { &[] } else { indices };
+    Ok(vec![
+        PagedBuffer::upload(device, "nodes", "BvhNode", "load_node", &scene.bvh.nodes)?,
+        PagedBuffer::upload(device, "triangles", "Triangle", "load_triangle", &scene.triangles)?,
+        up(device, "indices", "u32", "load_index", indices)?,
+        PagedBuffer::upload(device, "vertex_words", "f32", "load_vertex_word", &scene.vertex_words)?,
+        up(device, "texel_words", "u32", "load_texel_word", &scene.textures.words)?,
+        PagedBuffer::upload(device, "environment_texels", "vec4f", "load_environment_texel", &environment.texels)?,
+        PagedBuffer::upload(device, "environment_alias", "vec2u", "load_environment_alias", &environment.alias)?,
+    ])
+}

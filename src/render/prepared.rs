@@ -1,0 +1,209 @@
+//! A scene made ready for the device: flat, sorted by the BVH, its lights in a table. No device yet.
+
+use glam::{DVec3, Vec2};
+
+use super::emission::triangle_power;
+use super::environment::EnvironmentTable;
+use super::error::RenderError;
+use super::flatten::FlatGeometry;
+use super::layout::{self, NONE};
+use super::lights::{LightList, punctual};
+use super::materials::materials;
+use super::textures::TextureSet;
+use super::vertex_format::{VertexFormat, VertexNeeds};
+use crate::accel::{BuildOptions, Bvh};
+use crate::scene::{Features, Scene};
+
+/// Most triangles that light and BVH indices can count.
+const MAX_TRIANGLES: u64 = 1 << 30;
+
+/// Everything that the device will hold, in its own order and layout.
+#[derive(Debug)]
+pub struct Prepared {
+    /// What the scene requires of the shader.
+    pub features: Features,
+    /// The camera's position: the origin of all that follows, metres, world.
+    pub origin: DVec3,
+    /// The acceleration structure.
+    pub bvh: Bvh,
+    /// Triangles in its order.
+    pub triangles: Vec<layout::Triangle>,
+    /// Vertex indices of each triangle.
+    pub indices: Vec<[u32; 3]>,
+    /// Vertex attributes.
+    pub vertex_words: Vec<f32>,
+    /// Where they are in a vertex.
+    pub vertex_format: VertexFormat,
+    /// Materials.
+    pub materials: Vec<layout::Material>,
+    /// Textures.
+    pub textures: TextureSet,
+    /// The alias table over all lights.
+    pub lights: Vec<layout::Light>,
+    /// Punctual lights.
+    pub punctual: Vec<layout::PunctualLight>,
+    /// The environment's picture, if it has one.
+    pub environment: EnvironmentTable,
+    /// Its index in the light table, or [`NONE`].
+    pub environment_light: u32,
+    /// Sentences about what was left out.
+    pub warnings: Vec<String>,
+}
+
+impl Prepared {
+    /// Flattens a validated scene around one of its cameras and builds its BVH.
+    ///
+    /// # Errors
+    /// [`RenderError::TooMany`].
+    pub fn new(scene: &Scene, camera: usize, options: &BuildOptions) -> Result<Self, RenderError> {
+        check_counts(scene)?;
+        let features = Features::of(scene);
+        let vertex_format = VertexFormat::new(VertexNeeds {
+            normals: features.normals,
+            tangents: features.tangents,
+            uv0: features.uv0,
+            uv1: features.uv1,
+            colors: features.colors,
+        });
+        let origin = scene.cameras[camera].to_world.w_axis.truncate();
+        let mut flat = FlatGeometry::new(scene, &vertex_format, origin);
+        let bvh = Bvh::build(&flat.triangles, options);
+        flat.reorder(&bvh.order);
+        let mut textures = TextureSet::default();
+        let materials = materials(scene, &mut textures);
+        let environment = environment_table(scene);
+        let mut lights = LightList::default();
+        let triangle_lights = add_triangle_lights(&mut lights, scene, &flat, &vertex_format);
+        let environment_light = add_other_lights(&mut lights, scene, &flat, &environment);
+        Ok(Self {
+            features,
+            origin,
+            bvh,
+            triangles: device_triangles(&flat, &triangle_lights),
+            warnings: dropped_warning(flat.dropped),
+            indices: flat.indices,
+            vertex_words: flat.words,
+            vertex_format,
+            materials,
+            textures,
+            lights: lights.table(),
+            punctual: scene.lights.iter().map(|l| punctual(l, origin)).collect(),
+            environment,
+            environment_light,
+        })
+    }
+}
+
+fn check_counts(scene: &Scene) -> Result<(), RenderError> {
+    let check = |what, count: u64, limit: u64| {
+        if count > limit {
+            return Err(RenderError::TooMany { what, count, limit });
+        }
+        Ok(())
+    };
+    check("triangles", scene.triangle_count(), MAX_TRIANGLES)?;
+    let vertices = scene
+        .instances
+        .iter()
+        .map(|i| scene.meshes[i.mesh].positions.len() as u64)
+        .sum();
+    // A vertex has at most 15 words, counted in 32 bits.
+    check("vertices", vertices, u64::from(u32::MAX) / 15)?;
+    let texels = scene
+        .images
+        .iter()
+        .map(|i| u64::from(i.width) * u64::from(i.height))
+        .sum();
+    // An image is held at most twice, in at most two words a texel.
+    check("texels", texels, u64::from(u32::MAX) / 4)
+}
+
+fn environment_table(scene: &Scene) -> EnvironmentTable {
+    scene
+        .environment
+        .as_ref()
+        .and_then(|e| e.image.as_ref())
+        .map(|image| EnvironmentTable::new(image))
+        .unwrap_or_default()
+}
+
+/// Enters every emissive triangle; gives each triangle's index in the table, or [`NONE`].
+fn add_triangle_lights(
+    lights: &mut LightList,
+    scene: &Scene,
+    flat: &FlatGeometry,
+    format: &VertexFormat,
+) -> Vec<u32> {
+    (0..flat.triangles.len())
+        .map(|i| {
+            let material = &scene.materials[flat.materials[i] as usize];
+            if material.unlit || material.emissive.max_element() <= 0.0 {
+                return NONE;
+            }
+            let corners = |set| flat.indices[i].map(|v| tex_coord(flat, format, v, set));
+            let power = triangle_power(scene, material, &flat.triangles[i], corners);
+            if power > 0.0 && power.is_finite() {
+                lights.add_triangle(i as u32, power)
+            } else {
+                NONE
+            }
+        })
+        .collect()
+}
+
+fn tex_coord(flat: &FlatGeometry, format: &VertexFormat, vertex: u32, set: u32) -> Vec2 {
+    let offset = if set == 1 { format.uv1 } else { format.uv0 };
+    offset.map_or(Vec2::ZERO, |offset| {
+        let first = (vertex * format.stride + offset) as usize;
+        Vec2::new(flat.words[first], flat.words[first + 1])
+    })
+}
+
+/// Enters punctual lights and the environment; gives the index of the latter, or [`NONE`].
+fn add_other_lights(
+    lights: &mut LightList,
+    scene: &Scene,
+    flat: &FlatGeometry,
+    table: &EnvironmentTable,
+) -> u32 {
+    // In a scene without extent any radius will do.
+    let radius = flat.radius().max(f64::MIN_POSITIVE);
+    for (i, light) in scene.lights.iter().enumerate() {
+        if light.intensity.max_element() > 0.0 {
+            lights.add_punctual(i as u32, light, radius);
+        }
+    }
+    let Some(environment) = &scene.environment else {
+        return NONE;
+    };
+    let factor = DVec3::from(environment.radiance.map(f64::from));
+    let mean = if environment.image.is_some() { factor * table.mean } else { factor };
+    if mean.max_element() <= 0.0 {
+        return NONE;
+    }
+    lights.add_environment(mean, radius)
+}
+
+fn device_triangles(flat: &FlatGeometry, lights: &[u32]) -> Vec<layout::Triangle> {
+    flat.triangles
+        .iter()
+        .enumerate()
+        .map(|(i, [v0, v1, v2])| layout::Triangle {
+            v0: v0.to_array(),
+            material: flat.materials[i],
+            v1: v1.to_array(),
+            flags: flat.flags[i],
+            v2: v2.to_array(),
+            light: lights[i],
+        })
+        .collect()
+}
+
+fn dropped_warning(dropped: u64) -> Vec<String> {
+    if dropped == 0 {
+        return Vec::new();
+    }
+    vec![format!(
+        "{dropped} triangles have a vertex that is not a finite number and were left out"
+    )]
+}

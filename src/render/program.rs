@@ -1,0 +1,148 @@
+//! The shader of a render: generated files, composition, compilation.
+
+use super::error::RenderError;
+use super::gpu_scene::GpuScene;
+use super::layout::layouts;
+use super::prepared::Prepared;
+use super::settings::Settings;
+use crate::scene::Features;
+use crate::shader::{CompileOptions, Compiled, Composed, ShaderLibrary, VirtualFiles, compile, compose};
+
+/// The file that holds the entry point, and the entry point.
+const KERNEL: (&str, &str) = ("main.wgsl", "main");
+
+/// Compiles the kernel for a scene and settings; also gives the composed text.
+///
+/// # Errors
+/// An unknown integrator or sampler, or any shader error.
+pub fn build(
+    library: &ShaderLibrary,
+    virtuals: &VirtualFiles,
+    settings: &Settings,
+) -> Result<(Composed, Compiled), RenderError> {
+    let composed = compose(library, virtuals, KERNEL.0)?;
+    let options = CompileOptions {
+        entry_point: KERNEL.1,
+        checked: settings.checked,
+        overrides: &settings.overrides,
+        layouts: &layouts(),
+        debug_names: false,
+    };
+    let compiled = compile(&composed, &options)?;
+    Ok((composed, compiled))
+}
+
+/// The generated files for a scene on a device.
+///
+/// # Errors
+/// [`RenderError::Unknown`].
+pub fn virtual_files(
+    library: &ShaderLibrary,
+    settings: &Settings,
+    scene: &Prepared,
+    gpu_scene: &GpuScene,
+    count_steps: bool,
+) -> Result<VirtualFiles, RenderError> {
+    let mut files = choice_files(library, settings)?;
+    let constants = constants(scene, settings, count_steps);
+    files.insert("features.wgsl".into(), features_wgsl(&constants));
+    files.insert("buffers.wgsl".into(), gpu_scene.buffers_wgsl());
+    Ok(files)
+}
+
+/// The files that include the chosen integrator and sampler.
+///
+/// # Errors
+/// [`RenderError::Unknown`].
+pub fn choice_files(library: &ShaderLibrary, settings: &Settings) -> Result<VirtualFiles, RenderError> {
+    let integrator = choose(library, "integrator", &settings.integrator)?;
+    let sampler = choose(library, "sampler", &settings.sampler)?;
+    Ok(VirtualFiles::from([
+        ("integrator.wgsl".into(), integrator),
+        ("sampler_choice.wgsl".into(), sampler),
+    ]))
+}
+
+fn choose(library: &ShaderLibrary, kind: &'static str, name: &str) -> Result<String, RenderError> {
+    let known = library.names_in(kind);
+    if !known.iter().any(|k| k == name) {
+        return Err(RenderError::Unknown {
+            kind,
+            name: name.into(),
+            folder: format!("{}/{kind}", library.describe()),
+            known: known.join(", "),
+        });
+    }
+    Ok(format!("#include \"{kind}/{name}.wgsl\"\n"))
+}
+
+/// A generated constant: a name with a `bool` or `u32`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Constant {
+    /// `const NAME: bool`.
+    Bool(bool),
+    /// `const NAME: u32`.
+    U32(u32),
+}
+
+/// The constants of a scene and its settings.
+pub fn constants(scene: &Prepared, settings: &Settings, count_steps: bool) -> Vec<(&'static str, Constant)> {
+    let format = &scene.vertex_format;
+    let offset = |o: Option<u32>| Constant::U32(o.unwrap_or(0));
+    let light_triangles = scene.triangles.iter().any(|t| t.light != super::layout::NONE);
+    let mut list = feature_constants(&scene.features);
+    list.extend([
+        ("HAS_LIGHT_TRIANGLES", Constant::Bool(light_triangles)),
+        ("HAS_PUNCTUAL_LIGHTS", Constant::Bool(scene.lights.iter().any(super::lights::is_punctual))),
+        ("HAS_ENVIRONMENT", Constant::Bool(scene.environment_light != super::layout::NONE)),
+        ("HAS_ENVIRONMENT_IMAGE", Constant::Bool(!scene.environment.is_black())),
+        ("VERTEX_STRIDE", Constant::U32(format.stride)),
+        ("NORMAL_OFFSET", offset(format.normals)),
+        ("TANGENT_OFFSET", offset(format.tangents)),
+        ("UV0_OFFSET", offset(format.uv0)),
+        ("UV1_OFFSET", offset(format.uv1)),
+        ("COLOR_OFFSET", offset(format.colors)),
+        ("STACK_SIZE", Constant::U32(scene.bvh.depth.max(1))),
+        ("COUNT_STEPS", Constant::Bool(count_steps)),
+        ("COUNT_RAYS", Constant::Bool(settings.stats)),
+    ]);
+    list
+}
+
+/// The constants that follow from the scene's features alone.
+pub fn feature_constants(f: &Features) -> Vec<(&'static str, Constant)> {
+    [
+        ("HAS_NORMALS", f.normals),
+        ("HAS_TANGENTS", f.tangents),
+        ("HAS_UV0", f.uv0),
+        ("HAS_UV1", f.uv1),
+        ("HAS_COLORS", f.colors),
+        ("HAS_BASE_COLOR_TEXTURE", f.base_color_texture),
+        ("HAS_METALLIC_ROUGHNESS_TEXTURE", f.metallic_roughness_texture),
+        ("HAS_NORMAL_TEXTURE", f.normal_texture),
+        ("HAS_EMISSIVE_TEXTURE", f.emissive_texture),
+        ("HAS_SPECULAR_TEXTURE", f.specular_texture),
+        ("HAS_SPECULAR_COLOR_TEXTURE", f.specular_color_texture),
+        ("HAS_LINEAR_FILTER", f.linear_filter),
+        ("HAS_16_BIT_TEXTURES", f.wide_textures),
+        ("HAS_ALPHA", f.alpha_mask || f.alpha_blend),
+        ("HAS_SINGLE_SIDED", f.single_sided),
+        ("HAS_SPECULAR", f.specular),
+        ("HAS_EMISSION", f.emission),
+        ("HAS_UNLIT", f.unlit),
+    ]
+    .map(|(name, on)| (name, Constant::Bool(on)))
+    .to_vec()
+}
+
+/// The text of `features.wgsl`.
+pub fn features_wgsl(constants: &[(&'static str, Constant)]) -> String {
+    let mut text = String::from("// Generated: what the scene requires.\n");
+    for (name, value) in constants {
+        text += &match value {
+            Constant::Bool(on) => format!("const {name}: bool = {on};\n"),
+            Constant::U32(n) => format!("const {name}: u32 = {n}u;\n"),
+        };
+    }
+    text
+}

@@ -1,0 +1,339 @@
+//! The progressive loop: pieces of about 100 ms, whatever the scene and the device.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use super::band::{Band, bands};
+use super::error::RenderError;
+use super::film::Film;
+use super::frame::base_frame;
+use super::gpu_scene::GpuScene;
+use super::layout::{Dispatch, FilmPixel, Status};
+use super::prepared::Prepared;
+use super::program;
+use super::settings::Settings;
+use crate::gpu::{BindGroup, BindingKind, Buffer, Device, Pipeline};
+use crate::scene::Scene;
+use crate::shader::{self, OverrideInfo, ShaderLibrary};
+
+/// Wall time that one submission should take: short enough for any watchdog and for Ctrl-C.
+const PIECE: Duration = Duration::from_millis(100);
+/// Wall time after which all pixels should have got their next samples.
+const PASS: Duration = Duration::from_millis(500);
+/// Loop iterations that are kept back from a driver's limit, for those that no shader counts.
+const STEP_RESERVE: u32 = 256;
+/// Lanes of a tile and of a workgroup.
+const TILE_LANES: u32 = 64;
+
+/// How far a render is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Samples drawn, over all pixels.
+    pub samples_done: u64,
+    /// Samples to draw.
+    pub samples_total: u64,
+    /// Samples a pixel, on average.
+    pub spp_done: f64,
+    /// Wall time in the render loop.
+    pub elapsed: Duration,
+    /// Samples (paths) per second so far.
+    pub paths_per_second: f64,
+}
+
+/// A render in flight: a pipeline, a film, and how far it is.
+pub struct Renderer<'a> {
+    device: &'a Device,
+    settings: Settings,
+    pipeline: Pipeline,
+    bands: Vec<BoundBand>,
+    dispatch: Buffer,
+    status: Buffer,
+    wgsl: String,
+    overrides: Vec<OverrideInfo>,
+    /// Iterations at which the driver leaves loops, if it does.
+    loop_limit: Option<u32>,
+    spp_done: u64,
+    samples_done: u64,
+    elapsed: Duration,
+    compile_time: Duration,
+    /// Samples per second of the last pieces, smoothed.
+    rate: f64,
+}
+
+struct BoundBand {
+    band: Band,
+    film: Buffer,
+    group: BindGroup,
+}
+
+impl<'a> Renderer<'a> {
+    /// Compiles the shader for the scene and makes an empty film.
+    ///
+    /// # Errors
+    /// Bad settings, shader errors, a lack of device memory.
+    pub fn new(
+        device: &'a Device,
+        library: &ShaderLibrary,
+        scene: &Scene,
+        prepared: &Prepared,
+        gpu_scene: &GpuScene,
+        settings: &Settings,
+    ) -> Result<Self, RenderError> {
+        settings.check()?;
+        let start = Instant::now();
+        let loop_limit: Option<u32> = None; // device.probe()?.loop_limit;
+        let virtuals = program::virtual_files(library, settings, prepared, gpu_scene, loop_limit.is_some())?;
+        let (composed, compiled) = program::build(library, &virtuals, settings)?;
+        let kinds: Vec<(u32, BindingKind)> = compiled
+            .bindings
+            .iter()
+            .map(|b| (b.binding, binding_kind(b.kind)))
+            .collect();
+        let pipeline = device.pipeline(
+            &settings.integrator,
+            &compiled.spirv,
+            &compiled.entry_point,
+            &kinds,
+            compiled.workgroup_size,
+        )?;
+        let mut renderer = Self {
+            device,
+            settings: settings.clone(),
+            pipeline,
+            bands: Vec::new(),
+            dispatch: device.buffer("dispatch", size_of::<Dispatch>() as u64)?,
+            status: device.buffer("status", size_of::<Status>() as u64)?,
+            wgsl: composed.text,
+            overrides: compiled.overrides,
+            loop_limit,
+            spp_done: 0,
+            samples_done: 0,
+            elapsed: Duration::ZERO,
+            compile_time: Duration::ZERO,
+            rate: 0.0,
+        };
+        let used: Vec<u32> = kinds.iter().map(|k| k.0).collect();
+        renderer.bind_bands(scene, prepared, gpu_scene, &used)?;
+        renderer.warm_up()?;
+        renderer.compile_time = start.elapsed();
+        Ok(renderer)
+    }
+
+    fn bind_bands(
+        &mut self,
+        scene: &Scene,
+        prepared: &Prepared,
+        gpu_scene: &GpuScene,
+        used: &[u32],
+    ) -> Result<(), RenderError> {
+        let base = base_frame(scene, prepared, &self.settings);
+        let limit = self.device.info().max_storage_buffer_range;
+        for band in bands(self.settings.width, self.settings.height, limit)? {
+            let frame = self.device.buffer_with("frame", &[band.frame(base)])?;
+            let pixels = u64::from(band.rows) * u64::from(self.settings.width);
+            let film = self.device.buffer("film", pixels * size_of::<FilmPixel>() as u64)?;
+            let own = [(0, &frame), (1, &self.dispatch), (2, &film), (3, &self.status)];
+            let buffers: Vec<_> = own
+                .into_iter()
+                .chain(gpu_scene.bindings())
+                .filter(|(binding, _)| used.contains(binding))
+                .map(|(binding, buffer)| (binding, buffer, None))
+                .collect();
+            let group = self.device.bind(&self.pipeline, &buffers)?;
+            self.bands.push(BoundBand { band, film, group });
+        }
+        Ok(())
+    }
+
+    /// Lets the driver compile: lavapipe does so at the first dispatch.
+    fn warm_up(&mut self) -> Result<(), RenderError> {
+        self.upload_dispatch(&Dispatch {
+            lane_stride: 1,
+            ..Default::default()
+        })?;
+        if let Some(first) = self.bands.first() {
+            self.device.dispatch(&self.pipeline, &first.group, [1, 1, 1])?;
+        }
+        Ok(())
+    }
+
+    /// Draws samples until each pixel has as many as the settings ask for, or `on_progress`,
+    /// called after each piece of work, breaks. What has been drawn stays on the film.
+    ///
+    /// # Errors
+    /// The device fails, or [`RenderError::LoopLimit`].
+    pub fn render(
+        &mut self,
+        on_progress: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, RenderError> {
+        while self.spp_done < self.settings.spp {
+            let target = self.spp_done + self.pass_samples();
+            for band in 0..self.bands.len() {
+                if self.render_band(band, target, on_progress)?.is_break() {
+                    return Ok(ControlFlow::Break(()));
+                }
+            }
+            self.spp_done = target;
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    fn render_band(
+        &mut self,
+        band: usize,
+        target: u64,
+        on_progress: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, RenderError> {
+        let samples = target - self.spp_done;
+        let band_items = self.bands[band].band.tile_count() * TILE_LANES;
+        let mut item = 0;
+        while item < band_items {
+            let count = self.piece_items(samples).min(band_items - item);
+            let start = Instant::now();
+            self.run_piece(band, item, count, target)?;
+            item += count;
+            self.account(band, item - count, count, samples, start.elapsed());
+            if on_progress(self, &self.progress()).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Runs items until each of their pixels has `target` samples.
+    fn run_piece(&mut self, band: usize, first: u32, count: u32, target: u64) -> Result<(), RenderError> {
+        let mut lane_stride = 1;
+        loop {
+            let dispatch = Dispatch {
+                first_item: first,
+                item_count: count,
+                target_count: target as u32,
+                first_sample_low: self.settings.first_sample as u32,
+                first_sample_high: (self.settings.first_sample >> 32) as u32,
+                lane_stride,
+                step_limit: self.step_limit(lane_stride),
+                ..Default::default()
+            };
+            self.upload_dispatch(&dispatch)?;
+            let groups = (u64::from(count) * u64::from(lane_stride)).div_ceil(u64::from(TILE_LANES));
+            self.device
+                .dispatch(&self.pipeline, &self.bands[band].group, [groups as u32, 1, 1])?;
+            let Some(limit) = self.loop_limit else {
+                return Ok(());
+            };
+            let status = self.take_status()?;
+            if status.unfinished == 0 {
+                return Ok(());
+            }
+            if status.advanced == 0 {
+                // A single sample is too long for lanes that share the driver's limit: let one
+                // lane of each SIMD group have all of it.
+                let lanes = self.device.info().subgroup_size.max(2);
+                if lane_stride == lanes {
+                    return Err(RenderError::LoopLimit {
+                        limit,
+                        driver: self.device.info().driver.clone(),
+                    });
+                }
+                lane_stride = lanes;
+            }
+        }
+    }
+
+    /// Iterations that a lane may make so that the lanes of a SIMD group, should each go its own
+    /// way, stay below the driver's limit together.
+    fn step_limit(&self, lane_stride: u32) -> u32 {
+        let lanes = if lane_stride > 1 { 1 } else { self.device.info().subgroup_size.max(1) };
+        self.loop_limit
+            .map_or(u32::MAX, |limit| limit.saturating_sub(STEP_RESERVE) / lanes)
+    }
+
+    fn take_status(&self) -> Result<Status, RenderError> {
+        let status: Vec<Status> = self.device.read(&self.status, 0, 1)?;
+        self.device
+            .upload(&self.status, 0, bytemuck::bytes_of(&Status::default()))?;
+        Ok(status.first().copied().unwrap_or_default())
+    }
+
+    fn upload_dispatch(&self, dispatch: &Dispatch) -> Result<(), RenderError> {
+        Ok(self.device.upload(&self.dispatch, 0, bytemuck::bytes_of(dispatch))?)
+    }
+
+    /// Samples a pixel in the next pass over the picture.
+    fn pass_samples(&self) -> u64 {
+        let pixels = f64::from(self.settings.width) * f64::from(self.settings.height);
+        let fitting = (self.rate * PASS.as_secs_f64() / pixels) as u64;
+        fitting.clamp(1, self.settings.spp - self.spp_done)
+    }
+
+    /// Work items in the next piece, each of `samples` samples.
+    fn piece_items(&self, samples: u64) -> u32 {
+        let fitting = self.rate * PIECE.as_secs_f64() / samples as f64;
+        let most = u64::from(self.device.info().max_workgroups[0])
+            / u64::from(self.device.info().subgroup_size.max(2))
+            * u64::from(TILE_LANES);
+        let tiles = (fitting as u64 / u64::from(TILE_LANES)).max(16);
+        (tiles * u64::from(TILE_LANES)).min(most.max(u64::from(TILE_LANES))) as u32
+    }
+
+    fn account(&mut self, band: usize, first: u32, count: u32, samples: u64, time: Duration) {
+        let pixels = self.bands[band].band.pixels_in(first, count);
+        let drawn = pixels * samples;
+        self.samples_done += drawn;
+        self.elapsed += time;
+        let rate = drawn as f64 / time.as_secs_f64().max(1e-9);
+        self.rate = if self.rate == 0.0 { rate } else { 0.5 * (self.rate + rate) };
+    }
+
+    /// How far it is.
+    pub fn progress(&self) -> Progress {
+        let pixels = u64::from(self.settings.width) * u64::from(self.settings.height);
+        Progress {
+            samples_done: self.samples_done,
+            samples_total: pixels * self.settings.spp,
+            spp_done: self.samples_done as f64 / pixels as f64,
+            elapsed: self.elapsed,
+            paths_per_second: self.samples_done as f64 / self.elapsed.as_secs_f64().max(1e-9),
+        }
+    }
+
+    /// The film as it is.
+    ///
+    /// # Errors
+    /// The device fails.
+    pub fn film(&self) -> Result<Film, RenderError> {
+        let mut pixels = Vec::new();
+        for bound in &self.bands {
+            let count = u64::from(bound.band.rows) * u64::from(self.settings.width);
+            let band: Vec<FilmPixel> = self.device.read(&bound.film, 0, count)?;
+            pixels.extend(band);
+        }
+        Ok(Film {
+            width: self.settings.width,
+            height: self.settings.height,
+            pixels,
+        })
+    }
+
+    /// The composed shader text that was compiled.
+    pub fn wgsl(&self) -> &str {
+        &self.wgsl
+    }
+
+    /// The overrides that the shader declares.
+    pub fn overrides(&self) -> &[OverrideInfo] {
+        &self.overrides
+    }
+
+    /// Wall time of composing and compiling, the driver's part included.
+    pub fn compile_time(&self) -> Duration {
+        self.compile_time
+    }
+}
+
+fn binding_kind(kind: shader::BindingKind) -> BindingKind {
+    match kind {
+        shader::BindingKind::Uniform => BindingKind::Uniform,
+        _ => BindingKind::Storage,
+    }
+}
