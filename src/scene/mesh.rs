@@ -16,11 +16,13 @@ pub struct Mesh {
     pub indices: Vec<[u32; 3]>,
     /// Unit shading normals; empty: flat normals.
     pub normals: Vec<Vec3>,
-    /// Tangents, w = ±1 the sign of the bitangent; empty: no material here needs them.
+    /// Unit tangents, w = ±1 the sign of the bitangent w · (normal × tangent), which points up in the
+    /// normal map's picture; empty: the normal map, if the material has one, is not used here.
     pub tangents: Vec<Vec4>,
-    /// TEXCOORD_0, TEXCOORD_1.
+    /// The two sets of texture coordinates, finite; a set that a slot of the material reads is there,
+    /// except that the normal map's may be missing where there are no tangents.
     pub tex_coords: [Vec<Vec2>; 2],
-    /// COLOR_0, linear, multiplies the base colour.
+    /// COLOR_0, linear, in [0, 1], multiplies the base colour.
     pub colors: Vec<Vec4>,
     /// Index into [`super::Scene::materials`].
     pub material: usize,

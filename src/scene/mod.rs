@@ -2,11 +2,14 @@
 //!
 //! The folder `gltf` is the only place that knows glTF. The file `features` says what a scene requires of the shader.
 
+mod bounds;
 pub mod camera;
 pub mod environment;
+pub mod gltf;
 pub mod light;
 pub mod material;
 pub mod mesh;
+pub mod selector;
 pub mod texture;
 
 pub use camera::{Camera, Projection};
@@ -14,6 +17,7 @@ pub use environment::{Environment, EnvironmentImage};
 pub use light::{LightKind, PunctualLight};
 pub use material::{AlphaMode, Material, TextureSlot};
 pub use mesh::{Instance, Mesh};
+pub use selector::{SelectError, Selector};
 pub use texture::{Filter, Image, Sampler, Texels, Texture, Wrap};
 
 use std::path::PathBuf;
@@ -53,6 +57,8 @@ pub struct Scene {
     pub extensions: Vec<ExtensionUse>,
     /// Sentences about what was skipped or assumed, each naming its object.
     pub warnings: Vec<String>,
+    /// Sentences about choices that need no action, as the camera of a file without one.
+    pub notes: Vec<String>,
 }
 
 /// An extension that a file lists.

@@ -1,0 +1,224 @@
+//! Vertex attributes: which are kept, and what makes them fit for the shader.
+
+use glam::{Vec2, Vec3, Vec4};
+
+use super::accessor::{Component, Shape};
+use super::error::LoadError;
+use super::material::NORMAL;
+use super::primitive::{Primitive, Window};
+use super::tangents::{any_tangent, flat_normal};
+use crate::scene::Mesh;
+
+/// Read the attributes of the vertices in `window` into `mesh`, whose indices count from its start.
+pub(super) fn read(
+    primitive: &mut Primitive,
+    mesh: &mut Mesh,
+    window: Window,
+) -> Result<(), LoadError> {
+    mesh.positions = positions(primitive, window.clone())?;
+    normals(primitive, mesh, window.clone())?;
+    tex_coords(primitive, mesh, window.clone())?;
+    given_tangents(primitive, mesh, window.clone())?;
+    colors(primitive, mesh, window)
+}
+
+fn positions(primitive: &mut Primitive, window: Window) -> Result<Vec<Vec3>, LoadError> {
+    let Some(accessor) = primitive.attribute("POSITION")? else {
+        return Ok(Vec::new());
+    };
+    let positions: Vec<Vec3> = floats::<3, _>(accessor.floats(primitive.source.data, window)?);
+    let broken = positions.iter().filter(|p| !p.is_finite()).count();
+    if broken > 0 {
+        primitive.warn(&format!(
+            "{broken} of its positions are not finite; triangles that use them are skipped"
+        ));
+    }
+    Ok(positions)
+}
+
+/// A vector of glam's from an array, without a copy of the allocation where the layouts agree.
+fn floats<const N: usize, V: From<[f32; N]>>(raw: Vec<[f32; N]>) -> Vec<V> {
+    raw.into_iter().map(V::from).collect()
+}
+
+fn normals(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Result<(), LoadError> {
+    let Some(accessor) = primitive.attribute("NORMAL")? else {
+        return Ok(());
+    };
+    accessor.expect_shape("NORMAL", &[Shape::Vec3])?;
+    mesh.normals = floats(accessor.floats::<3>(primitive.source.data, window)?);
+    let mut broken = Vec::new();
+    for (vertex, normal) in mesh.normals.iter_mut().enumerate() {
+        match unit(*normal) {
+            Some(unit) => *normal = unit,
+            None => broken.push(vertex),
+        }
+    }
+    if !broken.is_empty() {
+        primitive.warn(&format!(
+            "{} of its normals have no direction; the triangles' own are used there",
+            broken.len()
+        ));
+        replace_normals(mesh, &broken);
+    }
+    Ok(())
+}
+
+/// The unit vector along `v`, none if it is zero or not finite.
+fn unit(v: Vec3) -> Option<Vec3> {
+    let scaled = v / v.abs().max_element();
+    scaled.try_normalize()
+}
+
+/// Give the vertices in `broken` the sum of the unit normals of the triangles around them.
+fn replace_normals(mesh: &mut Mesh, broken: &[usize]) {
+    for &vertex in broken {
+        mesh.normals[vertex] = Vec3::ZERO;
+    }
+    let mut is_broken = vec![false; mesh.normals.len()];
+    for &vertex in broken {
+        is_broken[vertex] = true;
+    }
+    for triangle in &mesh.indices {
+        let corners = triangle.map(|vertex| vertex as usize);
+        if corners.iter().any(|&vertex| is_broken[vertex]) {
+            let normal = flat_normal(corners.map(|vertex| mesh.positions[vertex]));
+            for vertex in corners.into_iter().filter(|&vertex| is_broken[vertex]) {
+                mesh.normals[vertex] += normal;
+            }
+        }
+    }
+    for &vertex in broken {
+        mesh.normals[vertex] = unit(mesh.normals[vertex]).unwrap_or(Vec3::Z);
+    }
+}
+
+/// Tangents of the file count only together with its normals, and only if a normal map reads them.
+fn given_tangents(
+    primitive: &mut Primitive,
+    mesh: &mut Mesh,
+    window: Window,
+) -> Result<(), LoadError> {
+    let wanted = primitive.normal_map && !mesh.normals.is_empty();
+    let Some(accessor) = primitive.attribute("TANGENT")?.filter(|_| wanted) else {
+        return Ok(());
+    };
+    accessor.expect_shape("TANGENT", &[Shape::Vec4])?;
+    let raw: Vec<Vec4> = floats(accessor.floats::<4>(primitive.source.data, window)?);
+    let mut broken = 0;
+    let tangents = raw.into_iter().zip(&mesh.normals);
+    mesh.tangents = tangents
+        .map(|(tangent, &normal)| {
+            let sign = if tangent.w < 0.0 { -1.0 } else { 1.0 };
+            unit(tangent.truncate()).map_or_else(
+                || {
+                    broken += 1;
+                    any_tangent(normal)
+                },
+                |unit| unit.extend(sign),
+            )
+        })
+        .collect();
+    if broken > 0 {
+        primitive.warn(&format!(
+            "{broken} of its tangents have no direction; any is used there"
+        ));
+    }
+    Ok(())
+}
+
+/// Keep the sets that the material reads; a missing one is zero, which shows one texel.
+fn tex_coords(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Result<(), LoadError> {
+    let material = primitive.raw_material();
+    for set in 0..2 {
+        let reads =
+            |slot: usize| material.slots[slot].is_some_and(|info| info.tex_coord as usize == set);
+        let readers = (0..material.slots.len()).filter(|&slot| reads(slot));
+        let readers: Vec<usize> = readers.collect();
+        if readers.is_empty() {
+            continue;
+        }
+        let name = format!("TEXCOORD_{}", material.tex_coords[set]);
+        let Some(accessor) = primitive.attribute(&name)? else {
+            if readers.contains(&NORMAL) {
+                primitive.normal_map = false;
+                primitive.warn(&format!(
+                    "it has no {name}; the normal map of {} is not used",
+                    material.label
+                ));
+            }
+            if readers != [NORMAL] {
+                primitive.warn(&format!(
+                    "it has no {name}; the textures of {} show a single texel",
+                    material.label
+                ));
+                mesh.tex_coords[set] = vec![Vec2::ZERO; window.len()];
+            }
+            continue;
+        };
+        accessor.expect_shape(&name, &[Shape::Vec2])?;
+        mesh.tex_coords[set] = floats(accessor.floats::<2>(primitive.source.data, window.clone())?);
+        let broken = replace(&mut mesh.tex_coords[set], |uv| uv.is_finite(), Vec2::ZERO);
+        if broken > 0 {
+            primitive.warn(&format!(
+                "{broken} elements of its {name} are not finite; 0 is used there"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Replace the values that are not `good`, and count them.
+fn replace<T: Copy>(values: &mut [T], good: impl Fn(&T) -> bool, other: T) -> usize {
+    let mut replaced = 0;
+    for value in values.iter_mut().filter(|value| !good(value)) {
+        *value = other;
+        replaced += 1;
+    }
+    replaced
+}
+
+fn colors(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Result<(), LoadError> {
+    let Some(accessor) = primitive.attribute("COLOR_0")? else {
+        return Ok(());
+    };
+    accessor.expect_shape("COLOR_0", &[Shape::Vec3, Shape::Vec4])?;
+    let data = primitive.source.data;
+    mesh.colors = match accessor.shape {
+        Shape::Vec3 => {
+            let colors = accessor.floats::<3>(data, window)?;
+            colors
+                .into_iter()
+                .map(|[r, g, b]| Vec4::new(r, g, b, 1.0))
+                .collect()
+        }
+        _ => floats(accessor.floats::<4>(data, window)?),
+    };
+    if accessor.component != Component::F32 && !accessor.normalized {
+        primitive.warn(
+            "its COLOR_0 has integers that are not marked as normalised; they are taken to be",
+        );
+        let largest = match accessor.component.size() {
+            1 => 255.0,
+            2 => 65535.0,
+            _ => u32::MAX as f32,
+        };
+        for color in &mut mesh.colors {
+            *color /= largest;
+        }
+    }
+    if accessor.shape == Shape::Vec3 {
+        for color in &mut mesh.colors {
+            color.w = 1.0;
+        }
+    }
+    let broken = replace(&mut mesh.colors, |color| color.is_finite(), Vec4::ZERO);
+    let in_range = |color: &Vec4| color.cmpge(Vec4::ZERO).all() && color.cmple(Vec4::ONE).all();
+    if broken > 0 || !mesh.colors.iter().all(in_range) {
+        primitive.warn("its COLOR_0 has values outside [0, 1]; they are clamped");
+        for color in &mut mesh.colors {
+            *color = color.clamp(Vec4::ZERO, Vec4::ONE);
+        }
+    }
+    Ok(())
+}

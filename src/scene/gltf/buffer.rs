@@ -1,0 +1,176 @@
+//! Buffers and buffer views: every range is checked against the bytes that are really there.
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::error::LoadError;
+use super::files::Files;
+use super::json::{Item, counted};
+
+/// The file's binary data.
+#[derive(Debug)]
+pub(super) struct Data<'a> {
+    file: PathBuf,
+    buffers: Vec<Buffer<'a>>,
+    views: Vec<View>,
+    budget: AtomicU64,
+    bytes: u64,
+}
+
+#[derive(Debug)]
+struct Buffer<'a> {
+    label: String,
+    length: usize,
+    bytes: Bytes<'a>,
+}
+
+#[derive(Debug)]
+enum Bytes<'a> {
+    Chunk(&'a [u8]),
+    File(Arc<Vec<u8>>),
+    Absent,
+}
+
+/// A range of a buffer.
+#[derive(Debug)]
+pub(super) struct View {
+    /// Index and name, for messages.
+    pub label: String,
+    buffer: usize,
+    range: Range<usize>,
+    /// Bytes from one element to the next, if the file says.
+    pub stride: Option<usize>,
+}
+
+impl View {
+    /// Its length in bytes.
+    pub fn len(&self) -> usize {
+        self.range.len()
+    }
+}
+
+/// Memory that decoded attributes may take beyond [`EXPANSION`] times the bytes read.
+const BASE_BUDGET: u64 = 1 << 30;
+/// How many times the bytes read decoded attributes may take: many primitives may share one
+/// accessor, but a small file must not ask for all memory.
+const EXPANSION: u64 = 64;
+/// Elements that an accessor without data may have in a small file.
+const SMALLEST_ZERO_LIMIT: u64 = 1 << 16;
+
+impl<'a> Data<'a> {
+    /// Read all buffers of the file; `chunk` is the binary chunk of a .glb.
+    pub fn load(
+        root: &Item<'a>,
+        files: &mut Files,
+        chunk: Option<&'a [u8]>,
+    ) -> Result<Self, LoadError> {
+        let items = root.items("buffers", "buffer")?;
+        let buffers: Vec<Buffer> = items
+            .iter()
+            .enumerate()
+            .map(|(index, item)| load_buffer(item, files, chunk.filter(|_| index == 0)))
+            .collect::<Result<_, _>>()?;
+        let items = root.items("bufferViews", "buffer view")?;
+        let views = items.iter().map(|item| read_view(item, &buffers));
+        let views = views.collect::<Result<_, _>>()?;
+        Ok(Self {
+            file: root.file().to_owned(),
+            views,
+            budget: AtomicU64::new(BASE_BUDGET + EXPANSION * files.total_bytes()),
+            bytes: files.total_bytes(),
+            buffers,
+        })
+    }
+
+    /// All buffer views.
+    pub fn views(&self) -> &[View] {
+        &self.views
+    }
+
+    /// The bytes of a view.
+    pub fn view(&self, index: usize) -> Result<&[u8], LoadError> {
+        let view = &self.views[index];
+        let buffer = &self.buffers[view.buffer];
+        let bytes = match &buffer.bytes {
+            Bytes::Chunk(bytes) => bytes,
+            Bytes::File(bytes) => bytes.as_slice(),
+            Bytes::Absent => {
+                return Err(LoadError::Invalid {
+                    path: self.file.clone(),
+                    object: view.label.clone(),
+                    problem: format!(
+                        "it needs {}, which has neither a URI nor a binary chunk",
+                        buffer.label
+                    ),
+                });
+            }
+        };
+        Ok(&bytes[view.range.clone()])
+    }
+
+    /// Largest number of elements that an accessor without data may have.
+    pub fn zero_limit(&self) -> u64 {
+        self.bytes.max(SMALLEST_ZERO_LIMIT)
+    }
+
+    /// Take `bytes` from what decoded attributes may use; false if nothing is left.
+    pub fn charge(&self, bytes: u64) -> bool {
+        let take = |left: u64| left.checked_sub(bytes);
+        self.budget
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
+            .is_ok()
+    }
+}
+
+fn load_buffer<'a>(
+    item: &Item<'a>,
+    files: &mut Files,
+    chunk: Option<&'a [u8]>,
+) -> Result<Buffer<'a>, LoadError> {
+    let length = item.required_count("byteLength")?;
+    let bytes = match (item.text("uri")?, chunk) {
+        (Some(uri), _) => Bytes::File(files.load(item, uri)?),
+        (None, Some(chunk)) => Bytes::Chunk(chunk),
+        (None, None) => Bytes::Absent,
+    };
+    let available = match &bytes {
+        Bytes::Chunk(bytes) => bytes.len(),
+        Bytes::File(bytes) => bytes.len(),
+        Bytes::Absent => length,
+    };
+    if available < length {
+        return Err(item.fault(format!(
+            "`byteLength` promises {}, but there are only {available}; export or copy the file again",
+            counted(length, "byte")
+        )));
+    }
+    Ok(Buffer {
+        label: item.label().to_owned(),
+        length,
+        bytes,
+    })
+}
+
+fn read_view(item: &Item, buffers: &[Buffer]) -> Result<View, LoadError> {
+    let buffer = item
+        .index("buffer", "buffer", buffers.len())?
+        .ok_or_else(|| item.fault("`buffer` is missing"))?;
+    let start = item.count("byteOffset")?.unwrap_or(0);
+    let length = item.required_count("byteLength")?;
+    let end = start.checked_add(length);
+    let end = end.filter(|&end| end <= buffers[buffer].length);
+    let end = end.ok_or_else(|| {
+        item.fault(format!(
+            "{length} bytes from byte {start} on do not fit in {}, which has {}",
+            buffers[buffer].label, buffers[buffer].length
+        ))
+    })?;
+    Ok(View {
+        label: item.label().to_owned(),
+        buffer,
+        range: start..end,
+        stride: item.count("byteStride")?.filter(|&stride| stride > 0),
+    })
+}

@@ -1,0 +1,56 @@
+//! Loading glTF 2.0: the only place that knows the format.
+//!
+//! Nothing in a file is trusted: every index, range and count is checked before it is used, and no
+//! allocation is larger than a fixed multiple of the bytes that are really there.
+
+mod accessor;
+mod attributes;
+mod buffer;
+mod camera;
+mod container;
+mod elements;
+mod error;
+mod extensions;
+mod files;
+mod framing;
+mod image;
+mod json;
+mod light;
+mod loader;
+mod material;
+mod node;
+mod primitive;
+mod tangents;
+mod texture;
+mod texture_info;
+mod topology;
+mod transform;
+mod uri;
+mod vertices;
+
+pub use error::LoadError;
+pub use extensions::SUPPORTED;
+
+use std::path::Path;
+
+use super::Scene;
+use super::selector::Selector;
+
+/// What to load from a file.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// Which of the file's scenes; else the file's default, else the first.
+    pub scene: Option<Selector>,
+}
+
+/// Load a scene from a .gltf or .glb file; its content decides which it is.
+///
+/// # Errors
+/// [`LoadError`]: one sentence that names the file and the object in it.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, LoadError> {
+    let bytes = files::read_scene(path)?;
+    let container = container::split(path, &bytes)?;
+    let json = container::parse(path, &bytes[container.json])?;
+    let binary = container.binary.map(|range| &bytes[range]);
+    loader::load(path, &bytes, &json, binary, options)
+}
