@@ -8,8 +8,8 @@ use super::error::{GpuError, check_limit};
 use super::memory::{Buffer, RawBuffer};
 use super::pipeline::{BindingKind, Layout, Pipeline};
 
-/// A buffer, or a range (offset, bytes) of it, at a binding number.
-pub(super) type Bound<'a> = (u32, &'a Buffer, Option<(u64, u64)>);
+/// A binding number, its buffer, and the range (offset, bytes) of it that the shader sees; `None` is the whole.
+pub type Bound<'a> = (u32, &'a Buffer, Option<(u64, u64)>);
 
 /// The buffers of a pipeline's descriptor set 0. It holds them alive, and fits every pipeline with equal bindings.
 pub struct BindGroup {

@@ -5,13 +5,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use ash::vk;
 use bytemuck::Pod;
 
-use super::bind::BindGroup;
+use super::bind::{BindGroup, Bound};
 use super::error::{GpuError, check_limit};
 use super::info::DeviceInfo;
 use super::instance::Instance;
 use super::logical::Logical;
 use super::memory::{Buffer, Purpose, RawBuffer};
 use super::pipeline::{BindingKind, Pipeline};
+use super::probe::{self, Probe};
 use super::queue::{Queue, Timing};
 use super::select::select;
 use super::transfer;
@@ -22,6 +23,9 @@ use super::validation::ValidationLog;
 pub struct OpenOptions {
     /// Whether the Khronos validation layer checks every call (slow).
     pub validation: bool,
+    /// Whether data goes through a staging buffer even where the device shares the host's memory: for tests of
+    /// the way that discrete GPUs need, on a machine without one.
+    pub staging: bool,
 }
 
 impl OpenOptions {
@@ -29,7 +33,10 @@ impl OpenOptions {
     pub fn from_env() -> Self {
         let value = std::env::var_os("ETENDUE_VALIDATION");
         let validation = value.is_some_and(|value| !value.is_empty() && value != "0");
-        Self { validation }
+        Self {
+            validation,
+            staging: false,
+        }
     }
 }
 
@@ -61,7 +68,11 @@ impl Device {
         let mut candidates = instance.candidates()?;
         let infos: Vec<_> = candidates.iter().map(|found| &found.info).collect();
         let chosen = select(&infos, selector)?;
-        let logical = Arc::new(Logical::new(instance, candidates.swap_remove(chosen))?);
+        let logical = Arc::new(Logical::new(
+            instance,
+            candidates.swap_remove(chosen),
+            options.staging,
+        )?);
         let queue = Arc::new(Mutex::new(Queue::new(&logical)?));
         Ok(Self { logical, queue })
     }
@@ -91,6 +102,18 @@ impl Device {
         self.validation()
             .map(|log| log.messages())
             .unwrap_or_default()
+    }
+
+    /// Measured behaviour of the device's shaders; the first call runs a tiny kernel, later ones remember.
+    ///
+    /// # Errors
+    /// Any of the calls for it, or [`GpuError::Probe`] when the results make no sense.
+    pub fn probe(&self) -> Result<Probe, GpuError> {
+        if let Some(known) = self.logical.probe.get() {
+            return Ok(*known);
+        }
+        let measured = probe::run(self)?;
+        Ok(*self.logical.probe.get_or_init(|| measured))
     }
 
     /// Makes a buffer of `bytes` bytes (16 for 0), filled with zeros.
@@ -198,11 +221,7 @@ impl Device {
     /// # Errors
     /// [`GpuError::Misuse`] unless each binding is given once and each offset is aligned,
     /// [`GpuError::OutOfRange`], [`GpuError::Limit`].
-    pub fn bind(
-        &self,
-        pipeline: &Pipeline,
-        buffers: &[(u32, &Buffer, Option<(u64, u64)>)],
-    ) -> Result<BindGroup, GpuError> {
+    pub fn bind(&self, pipeline: &Pipeline, buffers: &[Bound<'_>]) -> Result<BindGroup, GpuError> {
         BindGroup::new(pipeline, buffers)
     }
 

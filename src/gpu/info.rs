@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::error::GpuError;
 
 /// The sort of a device.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DeviceKind {
     /// A GPU with its own memory.
@@ -18,11 +18,12 @@ pub enum DeviceKind {
     /// A driver that runs shaders on the CPU, such as lavapipe.
     Cpu,
     /// None of these.
+    #[default]
     Other,
 }
 
 /// The name, driver and limits of a device.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct DeviceInfo {
     /// Its place in [`devices`](super::devices).
     pub index: usize,

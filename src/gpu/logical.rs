@@ -1,5 +1,6 @@
 //! The logical device, and the account of its memory.
 
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use ash::vk;
@@ -7,6 +8,7 @@ use ash::vk;
 use super::error::GpuError;
 use super::info::{DeviceInfo, DeviceKind, has_device_extension};
 use super::instance::{Candidate, Instance};
+use super::probe::Probe;
 
 /// A logical device with one queue. Everything made from it holds it by `Arc`, so it is destroyed last.
 pub(super) struct Logical {
@@ -14,6 +16,9 @@ pub(super) struct Logical {
     pub info: DeviceInfo,
     pub queue_family: u32,
     pub memory: vk::PhysicalDeviceMemoryProperties,
+    /// Whether buffers are mapped: the device's memory is the host's, and nobody asked for staging.
+    pub mapped: bool,
+    pub probe: OnceLock<Probe>,
     in_use: AtomicU64,
     peak: AtomicU64,
     // Dropped after the device, which `drop` destroys.
@@ -22,7 +27,7 @@ pub(super) struct Logical {
 
 impl Logical {
     /// Creates the device with 64-bit integers and floats where it has them, and no other feature.
-    pub fn new(instance: Instance, candidate: Candidate) -> Result<Self, GpuError> {
+    pub fn new(instance: Instance, candidate: Candidate, staging: bool) -> Result<Self, GpuError> {
         let Candidate {
             physical,
             queue_family,
@@ -31,20 +36,19 @@ impl Logical {
         let raw = create(&instance.raw, physical, queue_family, &info)?;
         // SAFETY: `physical` comes from `instance`.
         let memory = unsafe { instance.raw.get_physical_device_memory_properties(physical) };
+        let shared = matches!(info.kind, DeviceKind::Cpu | DeviceKind::Integrated);
+        let mapped = shared && !staging;
         Ok(Self {
             raw,
             info,
             queue_family,
             memory,
+            mapped,
+            probe: OnceLock::new(),
             in_use: AtomicU64::new(0),
             peak: AtomicU64::new(0),
             instance,
         })
-    }
-
-    /// Whether the device's own memory is the host's.
-    pub fn shares_host_memory(&self) -> bool {
-        matches!(self.info.kind, DeviceKind::Cpu | DeviceKind::Integrated)
     }
 
     /// Bytes of device memory that buffers hold now.

@@ -127,7 +127,8 @@ impl RawBuffer {
         let bound = unsafe { device.bind_buffer_memory(self.raw, self.memory, 0) };
         bound.map_err(|e| self.failure("bind", e, heap))?;
         self.cached = flags.contains(Flags::HOST_CACHED);
-        if flags.contains(Flags::HOST_VISIBLE | Flags::HOST_COHERENT) {
+        let wanted = purpose == Purpose::Staging || self.logical.mapped;
+        if wanted && flags.contains(Flags::HOST_VISIBLE | Flags::HOST_COHERENT) {
             self.map(heap)?;
         }
         Ok(())
@@ -167,7 +168,7 @@ impl RawBuffer {
 
     /// Whether the host may read from the buffer directly, at a fair speed.
     pub fn is_readable(&self) -> bool {
-        self.mapped.is_some() && (self.cached || self.logical.shares_host_memory())
+        self.mapped.is_some() && (self.cached || self.logical.info.kind == DeviceKind::Cpu)
     }
 
     /// Fills a writable buffer with zeros. `_lock` proves that the device is idle.
@@ -280,7 +281,7 @@ fn choose_type(logical: &Logical, allowed: u32, purpose: Purpose) -> Option<u32>
     let visible = Flags::HOST_VISIBLE | Flags::HOST_COHERENT;
     let wishes: &[Flags] = match purpose {
         Purpose::Staging => &[visible | Flags::HOST_CACHED, visible],
-        Purpose::Work if logical.shares_host_memory() => &[
+        Purpose::Work if logical.mapped => &[
             Flags::DEVICE_LOCAL | visible | Flags::HOST_CACHED,
             Flags::DEVICE_LOCAL | visible,
             Flags::DEVICE_LOCAL,

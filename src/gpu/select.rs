@@ -50,3 +50,46 @@ fn list(devices: &[&DeviceInfo]) -> String {
         .map(|device| format!("{}: {}", device.index, device.name));
     lines.collect::<Vec<_>>().join("; ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{DeviceInfo, DeviceKind, GpuError, select};
+
+    fn choose(selector: Option<&str>) -> Result<usize, GpuError> {
+        let device = |index, name: &str, kind| DeviceInfo {
+            index,
+            name: name.to_owned(),
+            kind,
+            ..DeviceInfo::default()
+        };
+        let all = [
+            device(0, "llvmpipe (LLVM 15)", DeviceKind::Cpu),
+            device(1, "Iris Xe", DeviceKind::Integrated),
+            device(2, "GeForce 4090", DeviceKind::Discrete),
+            device(3, "GeForce 3050", DeviceKind::Discrete),
+        ];
+        select(&all.each_ref(), selector)
+    }
+
+    #[test]
+    fn the_best_kind_is_the_default() {
+        assert_eq!(choose(None).expect("a device"), 2);
+        assert!(matches!(select(&[], None), Err(GpuError::NoDevice)));
+    }
+
+    #[test]
+    fn an_index_or_a_part_of_the_name_selects() {
+        assert_eq!(choose(Some("0")).expect("an index"), 0);
+        assert_eq!(choose(Some(" iris ")).expect("a name"), 1);
+        assert_eq!(choose(Some("GEFORCE")).expect("two match"), 2);
+        assert_eq!(choose(Some("3050")).expect("no such index, but a name"), 3);
+    }
+
+    #[test]
+    fn an_unknown_selector_lists_the_devices() {
+        for selector in ["radeon", "7", "", " ", "-1"] {
+            let error = choose(Some(selector)).expect_err("no such device");
+            assert!(error.to_string().contains("1: Iris Xe"), "{error}");
+        }
+    }
+}

@@ -71,12 +71,11 @@ unsafe extern "system" fn record(
     // SAFETY: Vulkan passes null or a valid struct, whose message is null or a C string.
     let text = unsafe { data.as_ref() }.map(|data| data.p_message);
     let text = text.filter(|text| !text.is_null());
-    // SAFETY: the message is not null, and a C string that lives during the callback.
-    let text = text.map(|text| {
-        unsafe { CStr::from_ptr(text) }
-            .to_string_lossy()
-            .into_owned()
-    });
-    log.push(text.unwrap_or_default());
+    let owned = |text| {
+        // SAFETY: the message is not null, and a C string that lives during the callback.
+        let text = unsafe { CStr::from_ptr(text) };
+        text.to_string_lossy().into_owned()
+    };
+    log.push(text.map(owned).unwrap_or_default());
     vk::FALSE
 }
