@@ -1,0 +1,1 @@
+"""The scenes that étendue ships, and the little glTF writer that they are made with."""
