@@ -5,10 +5,10 @@
 use std::io::Write;
 use std::process::{Command, Stdio};
 
+use etendue::render::Settings;
 use etendue::render::layout::layouts;
 use etendue::render::paged_wgsl;
 use etendue::render::program::{self, Constant, feature_constants};
-use etendue::render::Settings;
 use etendue::scene::Features;
 use etendue::shader::{CompileOptions, Compiled, ShaderLibrary, VirtualFiles, compile, compose};
 
@@ -49,7 +49,13 @@ fn buffers(pages: usize) -> String {
     .collect()
 }
 
-fn build(integrator: &str, sampler: &str, constants: &[(&'static str, Constant)], pages: usize, checked: bool) -> Compiled {
+fn build(
+    integrator: &str,
+    sampler: &str,
+    constants: &[(&'static str, Constant)],
+    pages: usize,
+    checked: bool,
+) -> Compiled {
     let library = ShaderLibrary::embedded();
     let settings = Settings {
         integrator: integrator.into(),
@@ -60,13 +66,15 @@ fn build(integrator: &str, sampler: &str, constants: &[(&'static str, Constant)]
     let mut files: VirtualFiles = program::choice_files(&library, &settings).expect("known names");
     files.insert("features.wgsl".into(), program::features_wgsl(constants));
     files.insert("buffers.wgsl".into(), buffers(pages));
-    let composed = compose(&library, &files, "main.wgsl").unwrap_or_else(|e| panic!("{}", e.report()));
+    let composed =
+        compose(&library, &files, "main.wgsl").unwrap_or_else(|e| panic!("{}", e.report()));
     let options = CompileOptions {
         checked,
         layouts: &layouts(),
         ..CompileOptions::default()
     };
-    compile(&composed, &options).unwrap_or_else(|e| panic!("{integrator}, {sampler}:\n{}", e.report()))
+    compile(&composed, &options)
+        .unwrap_or_else(|e| panic!("{integrator}, {sampler}:\n{}", e.report()))
 }
 
 fn with_features(on: bool) -> Vec<(&'static str, Constant)> {
@@ -114,9 +122,19 @@ fn spirv_val(compiled: &Compiled) {
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn();
-    let mut child = child.expect("spirv-val is not installed: apt-get install spirv-tools, or run tools/test");
-    let bytes: Vec<u8> = compiled.spirv.iter().flat_map(|w| w.to_le_bytes()).collect();
-    child.stdin.take().expect("a pipe").write_all(&bytes).expect("spirv-val reads");
+    let mut child =
+        child.expect("spirv-val is not installed: apt-get install spirv-tools, or run tools/test");
+    let bytes: Vec<u8> = compiled
+        .spirv
+        .iter()
+        .flat_map(|w| w.to_le_bytes())
+        .collect();
+    child
+        .stdin
+        .take()
+        .expect("a pipe")
+        .write_all(&bytes)
+        .expect("spirv-val reads");
     let output = child.wait_with_output().expect("spirv-val ends");
     assert!(
         output.status.success(),

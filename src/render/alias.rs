@@ -72,7 +72,9 @@ mod tests {
 
     #[test]
     fn realises_its_weights() {
-        let weights: Vec<f64> = (0..1000).map(|i| f64::from(i % 17) * f64::from(i % 5)).collect();
+        let weights: Vec<f64> = (0..1000)
+            .map(|i| f64::from(i % 17) * f64::from(i % 5))
+            .collect();
         let total: f64 = weights.iter().sum();
         let table = alias_table(&weights).expect("positive weights");
         for (i, p) in realised(&table).iter().enumerate() {
@@ -88,7 +90,10 @@ mod tests {
         weights[7] = 1e30;
         let table = alias_table(&weights).expect("positive weights");
         for (i, p) in realised(&table).iter().enumerate() {
-            assert!(weights[i] > 0.0 || *p == 0.0, "item {i} has probability {p}");
+            assert!(
+                weights[i] > 0.0 || *p == 0.0,
+                "item {i} has probability {p}"
+            );
         }
     }
 

@@ -22,7 +22,8 @@ pub struct Band {
 /// Eight rows do not fit.
 pub fn bands(width: u32, height: u32, limit: u64) -> Result<Vec<Band>, RenderError> {
     let row_bytes = u64::from(width) * size_of::<FilmPixel>() as u64;
-    let rows = (limit / row_bytes / u64::from(TILE) * u64::from(TILE)).min(u64::from(u32::MAX)) as u32;
+    let rows =
+        (limit / row_bytes / u64::from(TILE) * u64::from(TILE)).min(u64::from(u32::MAX)) as u32;
     if rows == 0 {
         return Err(RenderError::Setting(format!(
             "a picture {width} pixels wide does not fit the device's buffer bindings of {limit} bytes: ask for a narrower one"
@@ -80,7 +81,10 @@ impl Band {
 fn tile_step(tiles: u32) -> u32 {
     let largest = (u32::MAX / tiles.max(1)).min(tiles);
     let golden = ((f64::from(largest) * 0.618_034) as u32).max(1);
-    (1..=golden).rev().find(|&step| gcd(step, tiles) == 1).unwrap_or(1)
+    (1..=golden)
+        .rev()
+        .find(|&step| gcd(step, tiles) == 1)
+        .unwrap_or(1)
 }
 
 fn gcd(a: u32, b: u32) -> u32 {
@@ -97,7 +101,10 @@ mod tests {
             let bands = bands(width, height, 1 << 24).expect("fits");
             let rows: u32 = bands.iter().map(|b| b.rows).sum();
             assert_eq!(rows, height);
-            let pixels: u64 = bands.iter().map(|b| b.pixels_in(0, b.tile_count() * 64)).sum();
+            let pixels: u64 = bands
+                .iter()
+                .map(|b| b.pixels_in(0, b.tile_count() * 64))
+                .sum();
             assert_eq!(pixels, u64::from(width) * u64::from(height));
         }
     }

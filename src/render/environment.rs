@@ -29,8 +29,15 @@ impl EnvironmentTable {
             .enumerate()
             .map(|(i, &[r, g, b])| [r, g, b, entries.get(i).map_or(0.0, |e| e.probability)])
             .collect();
-        let alias = entries.iter().map(|e| [e.threshold.to_bits(), e.alias]).collect();
-        Self { texels, alias, mean }
+        let alias = entries
+            .iter()
+            .map(|e| [e.threshold.to_bits(), e.alias])
+            .collect();
+        Self {
+            texels,
+            alias,
+            mean,
+        }
     }
 
     /// Whether it sheds any light.

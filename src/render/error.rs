@@ -28,7 +28,9 @@ pub enum RenderError {
     #[error("{0}")]
     Setting(String),
     /// The scene has more of something than indices can count.
-    #[error("the scene has {count} {what}, but at most {limit} can be rendered: simplify the scene")]
+    #[error(
+        "the scene has {count} {what}, but at most {limit} can be rendered: simplify the scene"
+    )]
     TooMany {
         /// What there are too many of.
         what: &'static str,

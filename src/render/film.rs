@@ -19,7 +19,11 @@ impl Film {
         let p = &self.pixels[pixel];
         let n = finite_count(p);
         std::array::from_fn(|c| {
-            if n == 0.0 { 0.0 } else { (f64::from(p.sum[c]) + f64::from(p.sum_low[c])) / n }
+            if n == 0.0 {
+                0.0
+            } else {
+                (f64::from(p.sum[c]) + f64::from(p.sum_low[c])) / n
+            }
         })
     }
 
@@ -74,15 +78,18 @@ impl Film {
 
     /// Smallest and largest number of samples of a pixel.
     pub fn spp_range(&self) -> (u32, u32) {
-        self.pixels
-            .iter()
-            .fold((u32::MAX, 0), |(low, high), p| (low.min(p.count), high.max(p.count)))
+        self.pixels.iter().fold((u32::MAX, 0), |(low, high), p| {
+            (low.min(p.count), high.max(p.count))
+        })
     }
 
     /// Rays traced: closest-hit and any-hit; zero unless they were counted.
     pub fn rays(&self) -> (u64, u64) {
         self.pixels.iter().fold((0, 0), |(closest, any), p| {
-            (closest + u64::from(p.closest_rays), any + u64::from(p.any_rays))
+            (
+                closest + u64::from(p.closest_rays),
+                any + u64::from(p.any_rays),
+            )
         })
     }
 

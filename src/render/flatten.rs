@@ -5,9 +5,7 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::layout::{
-    TRIANGLE_ALPHA, TRIANGLE_FLAT, TRIANGLE_SINGLE_SIDED, TRIANGLE_TANGENTS,
-};
+use super::layout::{TRIANGLE_ALPHA, TRIANGLE_FLAT, TRIANGLE_SINGLE_SIDED, TRIANGLE_TANGENTS};
 use super::vertex_format::VertexFormat;
 use crate::scene::{AlphaMode, Instance, Material, Mesh, Scene};
 
@@ -43,7 +41,13 @@ impl FlatGeometry {
         flat.flags.reserve_exact(count);
         for instance in &scene.instances {
             let mesh = &scene.meshes[instance.mesh];
-            flat.add(instance, mesh, &scene.materials[mesh.material], format, origin);
+            flat.add(
+                instance,
+                mesh,
+                &scene.materials[mesh.material],
+                format,
+                origin,
+            );
         }
         flat
     }
@@ -56,7 +60,11 @@ impl FlatGeometry {
         format: &VertexFormat,
         origin: DVec3,
     ) {
-        let first_vertex = self.words.len().checked_div(format.stride as usize).unwrap_or(0) as u32;
+        let first_vertex = self
+            .words
+            .len()
+            .checked_div(format.stride as usize)
+            .unwrap_or(0) as u32;
         let positions: Vec<Vec3> = mesh
             .positions
             .iter()
@@ -91,10 +99,13 @@ impl FlatGeometry {
 
     /// Radius of a sphere around the middle of the bounds that holds everything, metres.
     pub fn radius(&self) -> f64 {
-        let (low, high) = self.triangles.iter().flatten().fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(low, high), v| (low.min(v.as_dvec3()), high.max(v.as_dvec3())),
-        );
+        let (low, high) = self
+            .triangles
+            .iter()
+            .flatten()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| {
+                (low.min(v.as_dvec3()), high.max(v.as_dvec3()))
+            });
         if self.triangles.is_empty() {
             return 0.0;
         }

@@ -25,7 +25,10 @@ impl GpuScene {
     pub fn upload(device: &Device, scene: &Prepared) -> Result<Self, RenderError> {
         let paged = paged_buffers(device, scene)?;
         let pages: usize = paged.iter().map(|p| p.pages().len()).sum();
-        let limit = device.info().max_buffers.saturating_sub(FIRST_PAGED_BINDING);
+        let limit = device
+            .info()
+            .max_buffers
+            .saturating_sub(FIRST_PAGED_BINDING);
         if pages as u64 > u64::from(limit) {
             return Err(RenderError::TooMany {
                 what: "pages of device buffers",
@@ -52,7 +55,9 @@ impl GpuScene {
     /// The generated `buffers.wgsl`.
     pub fn buffers_wgsl(&self) -> String {
         let mut binding = FIRST_PAGED_BINDING;
-        let mut text = String::from("// Generated: large arrays, split over pages where the device asks for it.\n");
+        let mut text = String::from(
+            "// Generated: large arrays, split over pages where the device asks for it.\n",
+        );
         for buffer in &self.paged {
             text += &buffer.wgsl(binding);
             binding += buffer.pages().len() as u32;
@@ -82,14 +87,48 @@ fn paged_buffers(device: &Device, scene: &Prepared) -> Result<Vec<PagedBuffer>, 
     let environment = &scene.environment;
     let indices = scene.indices.as_flattened();
     // Indices are read only to find a vertex's attributes.
-    let indices = if scene.vertex_format.stride == 0 { &[] } else { indices };
+    let indices = if scene.vertex_format.stride == 0 {
+        &[]
+    } else {
+        indices
+    };
     Ok(vec![
         PagedBuffer::upload(device, "nodes", "BvhNode", "load_node", &scene.bvh.nodes)?,
-        PagedBuffer::upload(device, "triangles", "Triangle", "load_triangle", &scene.triangles)?,
+        PagedBuffer::upload(
+            device,
+            "triangles",
+            "Triangle",
+            "load_triangle",
+            &scene.triangles,
+        )?,
         up(device, "indices", "u32", "load_index", indices)?,
-        PagedBuffer::upload(device, "vertex_words", "f32", "load_vertex_word", &scene.vertex_words)?,
-        up(device, "texel_words", "u32", "load_texel_word", &scene.textures.words)?,
-        PagedBuffer::upload(device, "environment_texels", "vec4f", "load_environment_texel", &environment.texels)?,
-        PagedBuffer::upload(device, "environment_alias", "vec2u", "load_environment_alias", &environment.alias)?,
+        PagedBuffer::upload(
+            device,
+            "vertex_words",
+            "f32",
+            "load_vertex_word",
+            &scene.vertex_words,
+        )?,
+        up(
+            device,
+            "texel_words",
+            "u32",
+            "load_texel_word",
+            &scene.textures.words,
+        )?,
+        PagedBuffer::upload(
+            device,
+            "environment_texels",
+            "vec4f",
+            "load_environment_texel",
+            &environment.texels,
+        )?,
+        PagedBuffer::upload(
+            device,
+            "environment_alias",
+            "vec2u",
+            "load_environment_alias",
+            &environment.alias,
+        )?,
     ])
 }

@@ -36,16 +36,6 @@ impl LightList {
         self.entries.len() as u32 - 1
     }
 
-    /// Number of lights.
-    pub fn len(&self) -> usize {
-        self.entries.len()
-    }
-
-    /// Whether there is no light.
-    pub fn is_empty(&self) -> bool {
-        self.entries.is_empty()
-    }
-
     /// The alias table. Half of the probability goes by power, half evenly to the kinds of lights
     /// that there are (and within a kind by power): a sun outside must not starve the lamp inside.
     pub fn table(&self) -> Vec<layout::Light> {
@@ -108,14 +98,17 @@ pub fn punctual(light: &PunctualLight, origin: DVec3) -> layout::PunctualLight {
         position: (light.position - origin).as_vec3().to_array(),
         kind,
         direction: light.direction.as_vec3().to_array(),
-        inverse_range: if light.range.is_finite() { (1.0 / light.range) as f32 } else { 0.0 },
+        inverse_range: if light.range.is_finite() {
+            (1.0 / light.range) as f32
+        } else {
+            0.0
+        },
         intensity: light.intensity.to_array(),
         cos_outer: cos_outer as f32,
         spot_scale: (1.0 / (cos_inner - cos_outer)).min(f64::from(f32::MAX)) as f32,
         ..Default::default()
     }
 }
-
 
 /// Whether an entry of the table is a punctual light.
 pub fn is_punctual(light: &layout::Light) -> bool {

@@ -1,8 +1,6 @@
 //! Materials as the device holds them.
 
-use super::layout::{
-    self, MATERIAL_BLEND, MATERIAL_DOUBLE_SIDED, MATERIAL_MASK, MATERIAL_UNLIT,
-};
+use super::layout::{self, MATERIAL_BLEND, MATERIAL_DOUBLE_SIDED, MATERIAL_MASK, MATERIAL_UNLIT};
 use super::textures::{Encoding, TextureSet};
 use crate::scene::{AlphaMode, Material, Scene};
 
@@ -13,7 +11,13 @@ pub fn materials(scene: &Scene, textures: &mut TextureSet) -> Vec<layout::Materi
         .materials
         .iter()
         .zip(used)
-        .map(|(m, used)| if used { material(scene, m, textures) } else { layout::Material::default() })
+        .map(|(m, used)| {
+            if used {
+                material(scene, m, textures)
+            } else {
+                layout::Material::default()
+            }
+        })
         .collect()
 }
 
@@ -38,7 +42,11 @@ fn material(scene: &Scene, m: &Material, textures: &mut TextureSet) -> layout::M
         ior_f0: ior_f0(m.ior),
         specular: m.specular,
         normal_scale: m.normal_scale,
-        alpha_cutoff: if let AlphaMode::Mask { cutoff } = m.alpha_mode { cutoff } else { 0.0 },
+        alpha_cutoff: if let AlphaMode::Mask { cutoff } = m.alpha_mode {
+            cutoff
+        } else {
+            0.0
+        },
         flags: flags(m),
         base_color_texture: slot(&m.base_color_texture, Srgb),
         metallic_roughness_texture: slot(&m.metallic_roughness_texture, Linear),

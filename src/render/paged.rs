@@ -59,7 +59,14 @@ impl PagedBuffer {
 
     /// The text that declares the pages from `first_binding` on, and the accessor.
     pub fn wgsl(&self, first_binding: u32) -> String {
-        paged_wgsl(self.name, self.element, self.accessor, self.pages.len(), self.page_bits, first_binding)
+        paged_wgsl(
+            self.name,
+            self.element,
+            self.accessor,
+            self.pages.len(),
+            self.page_bits,
+            first_binding,
+        )
     }
 }
 
@@ -84,7 +91,8 @@ pub fn paged_wgsl(
         text += &format!("    return {name}_0[index];\n");
     } else {
         let mask = (1_u64 << page_bits) - 1;
-        text += &format!("    let offset = index & {mask}u;\n    switch (index >> {page_bits}u) {{\n");
+        text +=
+            &format!("    let offset = index & {mask}u;\n    switch (index >> {page_bits}u) {{\n");
         for page in 1..pages {
             text += &format!("        case {page}u: {{ return {name}_{page}[offset]; }}\n");
         }

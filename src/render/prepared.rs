@@ -177,7 +177,11 @@ fn add_other_lights(
         return NONE;
     };
     let factor = DVec3::from(environment.radiance.map(f64::from));
-    let mean = if environment.image.is_some() { factor * table.mean } else { factor };
+    let mean = if environment.image.is_some() {
+        factor * table.mean
+    } else {
+        factor
+    };
     if mean.max_element() <= 0.0 {
         return NONE;
     }

@@ -6,7 +6,9 @@ use super::layout::layouts;
 use super::prepared::Prepared;
 use super::settings::Settings;
 use crate::scene::Features;
-use crate::shader::{CompileOptions, Compiled, Composed, ShaderLibrary, VirtualFiles, compile, compose};
+use crate::shader::{
+    CompileOptions, Compiled, Composed, ShaderLibrary, VirtualFiles, compile, compose,
+};
 
 /// The file that holds the entry point, and the entry point.
 const KERNEL: (&str, &str) = ("main.wgsl", "main");
@@ -54,7 +56,10 @@ pub fn virtual_files(
 ///
 /// # Errors
 /// [`RenderError::Unknown`].
-pub fn choice_files(library: &ShaderLibrary, settings: &Settings) -> Result<VirtualFiles, RenderError> {
+pub fn choice_files(
+    library: &ShaderLibrary,
+    settings: &Settings,
+) -> Result<VirtualFiles, RenderError> {
     let integrator = choose(library, "integrator", &settings.integrator)?;
     let sampler = choose(library, "sampler", &settings.sampler)?;
     Ok(VirtualFiles::from([
@@ -86,16 +91,32 @@ pub enum Constant {
 }
 
 /// The constants of a scene and its settings.
-pub fn constants(scene: &Prepared, settings: &Settings, count_steps: bool) -> Vec<(&'static str, Constant)> {
+pub fn constants(
+    scene: &Prepared,
+    settings: &Settings,
+    count_steps: bool,
+) -> Vec<(&'static str, Constant)> {
     let format = &scene.vertex_format;
     let offset = |o: Option<u32>| Constant::U32(o.unwrap_or(0));
-    let light_triangles = scene.triangles.iter().any(|t| t.light != super::layout::NONE);
+    let light_triangles = scene
+        .triangles
+        .iter()
+        .any(|t| t.light != super::layout::NONE);
     let mut list = feature_constants(&scene.features);
     list.extend([
         ("HAS_LIGHT_TRIANGLES", Constant::Bool(light_triangles)),
-        ("HAS_PUNCTUAL_LIGHTS", Constant::Bool(scene.lights.iter().any(super::lights::is_punctual))),
-        ("HAS_ENVIRONMENT", Constant::Bool(scene.environment_light != super::layout::NONE)),
-        ("HAS_ENVIRONMENT_IMAGE", Constant::Bool(!scene.environment.is_black())),
+        (
+            "HAS_PUNCTUAL_LIGHTS",
+            Constant::Bool(scene.lights.iter().any(super::lights::is_punctual)),
+        ),
+        (
+            "HAS_ENVIRONMENT",
+            Constant::Bool(scene.environment_light != super::layout::NONE),
+        ),
+        (
+            "HAS_ENVIRONMENT_IMAGE",
+            Constant::Bool(!scene.environment.is_black()),
+        ),
         ("VERTEX_STRIDE", Constant::U32(format.stride)),
         ("NORMAL_OFFSET", offset(format.normals)),
         ("TANGENT_OFFSET", offset(format.tangents)),
@@ -118,17 +139,20 @@ pub fn feature_constants(f: &Features) -> Vec<(&'static str, Constant)> {
         ("HAS_UV1", f.uv1),
         ("HAS_COLORS", f.colors),
         ("HAS_BASE_COLOR_TEXTURE", f.base_color_texture),
-        ("HAS_METALLIC_ROUGHNESS_TEXTURE", f.metallic_roughness_texture),
+        (
+            "HAS_METALLIC_ROUGHNESS_TEXTURE",
+            f.metallic_roughness_texture,
+        ),
         ("HAS_NORMAL_TEXTURE", f.normal_texture),
         ("HAS_EMISSIVE_TEXTURE", f.emissive_texture),
         ("HAS_SPECULAR_TEXTURE", f.specular_texture),
         ("HAS_SPECULAR_COLOR_TEXTURE", f.specular_color_texture),
-        ("HAS_LINEAR_FILTER", f.linear_filter),
-        ("HAS_16_BIT_TEXTURES", f.wide_textures),
+        ("HAS_LINEAR_FILTER", f.filter_linear),
+        ("HAS_16_BIT_TEXTURES", f.texels_16),
         ("HAS_ALPHA", f.alpha_mask || f.alpha_blend),
         ("HAS_SINGLE_SIDED", f.single_sided),
         ("HAS_SPECULAR", f.specular),
-        ("HAS_EMISSION", f.emission),
+        ("HAS_EMISSION", f.emissive),
         ("HAS_UNLIT", f.unlit),
     ]
     .map(|(name, on)| (name, Constant::Bool(on)))

@@ -81,8 +81,9 @@ impl<'a> Renderer<'a> {
     ) -> Result<Self, RenderError> {
         settings.check()?;
         let start = Instant::now();
-        let loop_limit: Option<u32> = None; // device.probe()?.loop_limit;
-        let virtuals = program::virtual_files(library, settings, prepared, gpu_scene, loop_limit.is_some())?;
+        let loop_limit = device.probe()?.loop_limit;
+        let virtuals =
+            program::virtual_files(library, settings, prepared, gpu_scene, loop_limit.is_some())?;
         let (composed, compiled) = program::build(library, &virtuals, settings)?;
         let kinds: Vec<(u32, BindingKind)> = compiled
             .bindings
@@ -131,8 +132,15 @@ impl<'a> Renderer<'a> {
         for band in bands(self.settings.width, self.settings.height, limit)? {
             let frame = self.device.buffer_with("frame", &[band.frame(base)])?;
             let pixels = u64::from(band.rows) * u64::from(self.settings.width);
-            let film = self.device.buffer("film", pixels * size_of::<FilmPixel>() as u64)?;
-            let own = [(0, &frame), (1, &self.dispatch), (2, &film), (3, &self.status)];
+            let film = self
+                .device
+                .buffer("film", pixels * size_of::<FilmPixel>() as u64)?;
+            let own = [
+                (0, &frame),
+                (1, &self.dispatch),
+                (2, &film),
+                (3, &self.status),
+            ];
             let buffers: Vec<_> = own
                 .into_iter()
                 .chain(gpu_scene.bindings())
@@ -152,7 +160,8 @@ impl<'a> Renderer<'a> {
             ..Default::default()
         })?;
         if let Some(first) = self.bands.first() {
-            self.device.dispatch(&self.pipeline, &first.group, [1, 1, 1])?;
+            self.device
+                .dispatch(&self.pipeline, &first.group, [1, 1, 1])?;
         }
         Ok(())
     }
@@ -201,7 +210,13 @@ impl<'a> Renderer<'a> {
     }
 
     /// Runs items until each of their pixels has `target` samples.
-    fn run_piece(&mut self, band: usize, first: u32, count: u32, target: u64) -> Result<(), RenderError> {
+    fn run_piece(
+        &mut self,
+        band: usize,
+        first: u32,
+        count: u32,
+        target: u64,
+    ) -> Result<(), RenderError> {
         let mut lane_stride = 1;
         loop {
             let dispatch = Dispatch {
@@ -215,9 +230,13 @@ impl<'a> Renderer<'a> {
                 ..Default::default()
             };
             self.upload_dispatch(&dispatch)?;
-            let groups = (u64::from(count) * u64::from(lane_stride)).div_ceil(u64::from(TILE_LANES));
-            self.device
-                .dispatch(&self.pipeline, &self.bands[band].group, [groups as u32, 1, 1])?;
+            let groups =
+                (u64::from(count) * u64::from(lane_stride)).div_ceil(u64::from(TILE_LANES));
+            self.device.dispatch(
+                &self.pipeline,
+                &self.bands[band].group,
+                [groups as u32, 1, 1],
+            )?;
             let Some(limit) = self.loop_limit else {
                 return Ok(());
             };
@@ -243,7 +262,11 @@ impl<'a> Renderer<'a> {
     /// Iterations that a lane may make so that the lanes of a SIMD group, should each go its own
     /// way, stay below the driver's limit together.
     fn step_limit(&self, lane_stride: u32) -> u32 {
-        let lanes = if lane_stride > 1 { 1 } else { self.device.info().subgroup_size.max(1) };
+        let lanes = if lane_stride > 1 {
+            1
+        } else {
+            self.device.info().subgroup_size.max(1)
+        };
         self.loop_limit
             .map_or(u32::MAX, |limit| limit.saturating_sub(STEP_RESERVE) / lanes)
     }
@@ -256,7 +279,9 @@ impl<'a> Renderer<'a> {
     }
 
     fn upload_dispatch(&self, dispatch: &Dispatch) -> Result<(), RenderError> {
-        Ok(self.device.upload(&self.dispatch, 0, bytemuck::bytes_of(dispatch))?)
+        Ok(self
+            .device
+            .upload(&self.dispatch, 0, bytemuck::bytes_of(dispatch))?)
     }
 
     /// Samples a pixel in the next pass over the picture.
@@ -282,7 +307,11 @@ impl<'a> Renderer<'a> {
         self.samples_done += drawn;
         self.elapsed += time;
         let rate = drawn as f64 / time.as_secs_f64().max(1e-9);
-        self.rate = if self.rate == 0.0 { rate } else { 0.5 * (self.rate + rate) };
+        self.rate = if self.rate == 0.0 {
+            rate
+        } else {
+            0.5 * (self.rate + rate)
+        };
     }
 
     /// How far it is.

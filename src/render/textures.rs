@@ -58,7 +58,11 @@ impl TextureSet {
         let wide = matches!(image.texels, Texels::Rgba16(_));
         let sampler = texture.sampler;
         let mut flags = wrap_bits(sampler.wrap_u) | wrap_bits(sampler.wrap_v) << 2;
-        flags |= if sampler.filter == Filter::Linear { TEXTURE_LINEAR } else { 0 };
+        flags |= if sampler.filter == Filter::Linear {
+            TEXTURE_LINEAR
+        } else {
+            0
+        };
         flags |= match (wide, encoding) {
             (true, _) => TEXTURE_16_BIT,
             (false, Encoding::Srgb) => TEXTURE_SRGB,
@@ -84,11 +88,15 @@ impl TextureSet {
         let first_word = self.words.len() as u32;
         match &image.texels {
             Texels::Rgba8(texels) => {
-                self.words.extend(texels.iter().map(|t| u32::from_le_bytes(*t)));
+                self.words
+                    .extend(texels.iter().map(|t| u32::from_le_bytes(*t)));
             }
             Texels::Rgba16(texels) => self.words.extend(texels.iter().flat_map(|t| {
                 let [r, g, b, a] = if decode { decode_srgb_16(*t) } else { *t };
-                [u32::from(r) | u32::from(g) << 16, u32::from(b) | u32::from(a) << 16]
+                [
+                    u32::from(r) | u32::from(g) << 16,
+                    u32::from(b) | u32::from(a) << 16,
+                ]
             })),
         }
         self.placed_images.insert((index, decode), first_word);

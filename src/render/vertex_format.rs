@@ -67,7 +67,11 @@ impl VertexFormat {
             return;
         }
         words.reserve(mesh.positions.len() * self.stride as usize);
-        let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let sign = if linear.determinant() < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
         let cofactor = cofactor(linear) * sign;
         for i in 0..mesh.positions.len() {
             if self.normals.is_some() {
@@ -134,7 +138,11 @@ mod tests {
             ..Mesh::default()
         };
         let mut words = Vec::new();
-        format.append(&mut words, &mesh, &DMat3::from_diagonal(DVec3::new(-2.0, 1.0, 1.0)));
+        format.append(
+            &mut words,
+            &mesh,
+            &DMat3::from_diagonal(DVec3::new(-2.0, 1.0, 1.0)),
+        );
         let n = Vec3::from_slice(&words);
         assert!((n - Vec3::new(-0.5, 1.0, 0.0).normalize()).length() < 1e-6);
     }

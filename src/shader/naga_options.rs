@@ -1,9 +1,9 @@
 //! What étendue asks of naga, for trusted and for checked kernels.
 
+use naga::Module;
 use naga::back::spv;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use naga::Module;
 
 /// What a shader may use beyond core WGSL, fixed so that a shader that compiles here compiles for
 /// every device: subgroup operations (in Vulkan 1.1; the device says which) and half floats packed

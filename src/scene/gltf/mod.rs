@@ -19,6 +19,7 @@ mod light;
 mod loader;
 mod material;
 mod node;
+mod pose;
 mod primitive;
 mod tangents;
 mod texture;
