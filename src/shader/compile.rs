@@ -163,7 +163,7 @@ fn write(
         shader_stage: ShaderStage::Compute,
         entry_point: options.entry_point.to_owned(),
     };
-    let writer = naga_options::writer_options(options.checked);
+    let writer = naga_options::writer_options(module, options.checked);
     let words = spv::write_vec(module, info, &writer, Some(&pipeline)).map_err(|e| {
         let place = report
             .find_declaration("fn", options.entry_point)

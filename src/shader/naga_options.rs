@@ -1,5 +1,6 @@
 //! What étendue asks of naga, for trusted and for checked kernels.
 
+use naga::Module;
 use naga::back::spv;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -25,7 +26,7 @@ pub(super) fn validator() -> Validator {
 /// neighbour and overwrite it: a wrong picture that looks right.)
 ///
 /// Names are always written, because [`super::no_contraction`] finds functions by them.
-pub(super) fn writer_options(checked: bool) -> spv::Options<'static> {
+pub(super) fn writer_options(module: &Module, checked: bool) -> spv::Options<'static> {
     let policy = match checked {
         true => BoundsCheckPolicy::ReadZeroSkipWrite,
         false => BoundsCheckPolicy::Unchecked,
@@ -38,6 +39,7 @@ pub(super) fn writer_options(checked: bool) -> spv::Options<'static> {
         lang_version: SPIRV_VERSION,
         flags: spv::WriterFlags::DEBUG,
         fake_missing_bindings: false,
+        binding_map: binding_map(module),
         bounds_check_policies: BoundsCheckPolicies {
             index: policy,
             buffer: policy,
@@ -50,4 +52,21 @@ pub(super) fn writer_options(checked: bool) -> spv::Options<'static> {
         emit_int_div_checks: checked,
         ..spv::Options::default()
     }
+}
+
+/// Groups and bindings stay as the shader has them; naga asks for each to be said.
+fn binding_map(module: &Module) -> spv::BindingMap {
+    let places = module
+        .global_variables
+        .iter()
+        .filter_map(|(_, v)| v.binding);
+    let same = |at: naga::ResourceBinding| {
+        let info = spv::BindingInfo {
+            descriptor_set: at.group,
+            binding: at.binding,
+            binding_array_size: None,
+        };
+        (at, info)
+    };
+    places.map(same).collect()
 }
