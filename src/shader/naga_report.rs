@@ -52,15 +52,48 @@ impl<'a> Reporter<'a> {
 
     pub(super) fn parse_error(&self, error: &ParseError) -> Diagnostic {
         let mut diagnostic = self.plain(Severity::Error, error.message());
+        let first = error.labels().find_map(|(span, _)| span.to_range());
+        let previous = first.and_then(|range| self.end_of_previous_file(range.start));
+        if let Some((span, false)) = &previous {
+            let message = "this file ends with something unfinished";
+            diagnostic = diagnostic.label(span.clone(), message);
+        }
         for (span, message) in error.labels() {
             if let Some(range) = span.to_range() {
                 diagnostic = diagnostic.label(self.place(range), message);
             }
         }
+        if let Some((span, true)) = previous {
+            let message = "the file before ends here: is a `}` missing?";
+            diagnostic = diagnostic.label(span, message);
+        }
         for note in error.notes() {
             diagnostic = diagnostic.note(note);
         }
         self.placed(diagnostic)
+    }
+
+    /// If `byte` begins a file's first text, or its first behind an include: the end of the text
+    /// before it, which is another file's and may be what is wrong; and whether that looks finished.
+    fn end_of_previous_file(&self, byte: usize) -> Option<(FileSpan, bool)> {
+        let before = self.text().get(..byte)?;
+        let mut lines = before.split_inclusive('\n').rev();
+        let mut end = before.len();
+        let line = lines.find(|line| {
+            let code = line.trim();
+            let skip = code.is_empty() || code.starts_with("//");
+            end -= if skip { line.len() } else { 0 };
+            !skip
+        })?;
+        let last = end - line.len() + line.trim_end().len();
+        let width = line
+            .trim_end()
+            .chars()
+            .next_back()
+            .map_or(0, char::len_utf8);
+        let span = self.place(last - width..last);
+        let finished = line.trim_end().ends_with(['}', ';']);
+        (span.file != self.place(byte..byte).file).then_some((span, finished))
     }
 
     /// The narrowest span is the place to look at; naga lists the enclosing function first.
@@ -73,6 +106,9 @@ impl<'a> Reporter<'a> {
             if let Some(range) = defined(*span) {
                 diagnostic = diagnostic.label(self.place(range), readable_label(label));
             }
+        }
+        if diagnostic.message.contains("`return` expression None") {
+            diagnostic = diagnostic.note("a way through the function ends without `return VALUE;`");
         }
         for note in notes {
             diagnostic = diagnostic.note(note);
