@@ -1,0 +1,123 @@
+// Watertight ray-triangle intersection: Woop, Benthin, Wald, JCGT 2(1), 2013.
+//
+// Twin of src/geometry/exact.rs and src/geometry/triangle.rs, operation for operation; the proofs
+// and the valid range are there. Functions named exact_... are compiled without contraction of
+// a * b + c: their rounding errors cancel only if every operation rounds by itself.
+
+// What the triangle test needs of a ray: the shear that turns it into the third axis.
+struct RaySetup {
+  origin: vec3f,
+  // Axis of the largest |direction|, 0 to 2.
+  axis: u32,
+  // Shear of x and y, scale of z.
+  shear: vec3f,
+  // Whether the other two axes are swapped, which keeps the winding.
+  swap: bool,
+}
+
+// A hit: t > 0, in lengths of the ray's direction. A miss: t = 0.
+struct TriangleHit {
+  t: f32,
+  // Barycentric coordinates of v0, v1, v2; each in [0, 1].
+  b: vec3f,
+  // Whether v0, v1, v2 run clockwise as seen from the ray's origin.
+  back_face: bool,
+}
+
+fn triangle_miss() -> TriangleHit {
+  return TriangleHit(0.0, vec3f(0.0), false);
+}
+
+// a with the lower 12 bits of its significand cleared.
+fn exact_high(a: f32) -> f32 {
+  return bitcast<f32>(bitcast<u32>(a) & 0xfffff000u);
+}
+
+// a * b - fl(a * b), exactly (Dekker). Symmetric in a and b even where it underflows.
+fn exact_product_error(a: f32, b: f32) -> f32 {
+  let x = min(a, b);
+  let y = max(a, b);
+  let product = x * y;
+  let x_high = exact_high(x);
+  let x_low = x - x_high;
+  let y_high = exact_high(y);
+  let y_low = y - y_high;
+  let rest = ((product - x_high * y_high) - x_low * y_high) - x_high * y_low;
+  return x_low * y_low - rest;
+}
+
+// Twice the signed area of the triangle (0, p, q). Where it is not 0 its sign is right.
+fn exact_edge(p: vec2f, q: vec2f) -> f32 {
+  return p.x * q.y - p.y * q.x;
+}
+
+// exact_edge to a relative error of 3 * 2^-24; its sign is exact, 0 included.
+fn exact_edge_refined(p: vec2f, q: vec2f) -> f32 {
+  let difference = p.x * q.y - p.y * q.x;
+  let a = exact_product_error(p.x, q.y);
+  let b = -exact_product_error(p.y, q.x);
+  let sum = a + b;
+  let b_part = sum - a;
+  let a_part = sum - b_part;
+  let lost = (a - a_part) + (b - b_part);
+  return (difference + sum) + lost;
+}
+
+// v with axis last, in cyclic order, then the first two swapped if asked.
+fn permute(axis: u32, swap: bool, v: vec3f) -> vec3f {
+  let cyclic = select(select(v, v.zxy, axis == 1u), v.yzx, axis == 0u);
+  return select(cyclic, cyclic.yxz, swap);
+}
+
+// The direction is finite and not zero.
+fn ray_setup(origin: vec3f, direction: vec3f) -> RaySetup {
+  let size = abs(direction);
+  let axis = select(select(2u, 1u, size.y >= size.z), 0u, size.x >= size.y && size.x >= size.z);
+  let unswapped = permute(axis, false, direction);
+  let swap = unswapped.z < 0.0;
+  let d = permute(axis, swap, direction);
+  return RaySetup(origin, axis, vec3f(d.x / d.z, d.y / d.z, 1.0 / d.z), swap);
+}
+
+// The vertex in the ray's own space, where the ray is the third axis; z is its t.
+fn exact_shear(setup: RaySetup, vertex: vec3f) -> vec3f {
+  let p = permute(setup.axis, setup.swap, vertex - setup.origin);
+  return vec3f(p.x - setup.shear.x * p.z, p.y - setup.shear.y * p.z, setup.shear.z * p.z);
+}
+
+// The sum of edge * z, from left to right.
+fn exact_depth(edges: vec3f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
+  return (edges.x * a.z + edges.y * b.z) + edges.z * c.z;
+}
+
+// Whether two of the numbers have opposite signs; 0 has none.
+fn signs_differ(e: vec3f) -> bool {
+  return (e.x < 0.0 || e.y < 0.0 || e.z < 0.0) && (e.x > 0.0 || e.y > 0.0 || e.z > 0.0);
+}
+
+// Intersects the ray with a triangle, both sides; t is any positive number.
+fn intersect_triangle(setup: RaySetup, v0: vec3f, v1: vec3f, v2: vec3f) -> TriangleHit {
+  let a = exact_shear(setup, v0);
+  let b = exact_shear(setup, v1);
+  let c = exact_shear(setup, v2);
+  // Reject by signs that are certain: most triangles end here.
+  let quick = vec3f(exact_edge(c.xy, b.xy), exact_edge(a.xy, c.xy), exact_edge(b.xy, a.xy));
+  if (signs_differ(quick)) {
+    return triangle_miss();
+  }
+  // Decide the zeros, and find the values to nearly full precision.
+  let edges = vec3f(
+    exact_edge_refined(c.xy, b.xy),
+    exact_edge_refined(a.xy, c.xy),
+    exact_edge_refined(b.xy, a.xy),
+  );
+  let determinant = (edges.x + edges.y) + edges.z;
+  if (signs_differ(edges) || determinant == 0.0) {
+    return triangle_miss();
+  }
+  let t = exact_depth(edges, a, b, c) / determinant;
+  if (t > 0.0) {
+    return TriangleHit(t, edges / determinant, determinant < 0.0);
+  }
+  return triangle_miss();
+}

@@ -1,0 +1,69 @@
+//! What the builder moves about instead of triangles.
+
+use crate::geometry::Aabb;
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// A triangle's exact box and its index in the input.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Primitive {
+    /// Exact bounds, metres.
+    pub bounds: Aabb,
+    /// Index of the triangle in the input.
+    pub index: u32,
+}
+
+impl Primitive {
+    /// The middle of the box, by which primitives are split.
+    pub fn centroid(&self) -> Vec3 {
+        self.bounds.center()
+    }
+}
+
+/// One primitive a triangle, in the order of the input.
+pub(super) fn primitives(triangles: &[[Vec3; 3]]) -> Vec<Primitive> {
+    triangles
+        .par_iter()
+        .enumerate()
+        .map(|(i, triangle)| {
+            // Adding 0 turns -0 into +0, so that no minimum depends on the order of its arguments.
+            let vertices = triangle.map(|v| v + Vec3::ZERO);
+            Primitive {
+                bounds: Aabb::from_points(&vertices),
+                index: i as u32,
+            }
+        })
+        .collect()
+}
+
+/// The bounds of all boxes.
+pub(super) fn bounds(primitives: &[Primitive]) -> Aabb {
+    let add = |acc: Aabb, p: &Primitive| acc.union(p.bounds);
+    fold_chunks(primitives, || Aabb::EMPTY, add, Aabb::union)
+}
+
+/// The bounds of all centroids.
+pub(super) fn centroid_bounds(primitives: &[Primitive]) -> Aabb {
+    let add = |acc: Aabb, p: &Primitive| acc.with_point(p.centroid());
+    fold_chunks(primitives, || Aabb::EMPTY, add, Aabb::union)
+}
+
+/// Primitives that one task folds; more of them are spread over threads.
+const CHUNK: usize = 1 << 15;
+
+/// Folds over primitives, in parallel where there are many. `merge` must be commutative and
+/// associative bit for bit, as minima, maxima and integer sums are: the threads are not ordered.
+pub(super) fn fold_chunks<T: Send>(
+    primitives: &[Primitive],
+    empty: impl Fn() -> T + Sync + Send,
+    add: impl Fn(T, &Primitive) -> T + Sync + Send,
+    merge: impl Fn(T, T) -> T + Sync + Send,
+) -> T {
+    if primitives.len() <= CHUNK {
+        return primitives.iter().fold(empty(), add);
+    }
+    primitives
+        .par_chunks(CHUNK)
+        .map(|chunk| chunk.iter().fold(empty(), &add))
+        .reduce(&empty, merge)
+}
