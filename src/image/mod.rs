@@ -1,13 +1,15 @@
-//! Pictures: in and out of files, and to the display.
+//! Pictures: in and out of files, to the display, and compared with each other.
 //!
 //! [`exr`] keeps what was rendered without loss, [`png`] shows it, [`read_rgb`]
-//! brings environment maps in.
+//! brings environment maps in. [`metrics`] measures how far two pictures are
+//! apart; `statistics` decides whether the distance is more than noise.
 //!
 //! Colour is linear Rec. 709 throughout; pixel (0, 0) is the top left.
 
 pub mod error;
 pub mod exr;
 pub mod hdr;
+pub mod metrics;
 pub mod picture;
 pub mod png;
 pub mod rgb;
