@@ -2,7 +2,7 @@
 //!
 //! [`exr`] keeps what was rendered without loss, [`png`] shows it, [`read_rgb`]
 //! brings environment maps in. [`metrics`] measures how far two pictures are
-//! apart; `statistics` decides whether the distance is more than noise.
+//! apart; [`statistics`] decides whether the distance is more than noise.
 //!
 //! Colour is linear Rec. 709 throughout; pixel (0, 0) is the top left.
 
@@ -13,6 +13,7 @@ pub mod metrics;
 pub mod picture;
 pub mod png;
 pub mod rgb;
+pub mod statistics;
 pub mod tone_map;
 
 mod atomic;
