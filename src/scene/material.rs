@@ -95,3 +95,18 @@ pub struct TextureSlot {
     /// See `matrix`.
     pub offset: Vec2,
 }
+
+impl Material {
+    /// All texture slots that are filled.
+    pub fn texture_slots(&self) -> impl Iterator<Item = &TextureSlot> {
+        let slots = [
+            &self.base_color_texture,
+            &self.metallic_roughness_texture,
+            &self.normal_texture,
+            &self.emissive_texture,
+            &self.specular_texture,
+            &self.specular_color_texture,
+        ];
+        slots.into_iter().flatten()
+    }
+}

@@ -5,20 +5,26 @@
 mod bounds;
 pub mod camera;
 pub mod environment;
+pub mod features;
 pub mod gltf;
 pub mod light;
 pub mod material;
 pub mod mesh;
 pub mod selector;
+pub mod summary;
 pub mod texture;
+mod validate;
 
 pub use camera::{Camera, Projection};
 pub use environment::{Environment, EnvironmentImage};
+pub use features::{FeatureReason, Features};
 pub use light::{LightKind, PunctualLight};
 pub use material::{AlphaMode, Material, TextureSlot};
 pub use mesh::{Instance, Mesh};
 pub use selector::{SelectError, Selector};
+pub use summary::Summary;
 pub use texture::{Filter, Image, Sampler, Texels, Texture, Wrap};
+pub use validate::SceneError;
 
 use std::path::PathBuf;
 

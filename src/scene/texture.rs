@@ -61,3 +61,26 @@ pub enum Filter {
     /// Bilinear, in linear radiance: texels are decoded before they are combined.
     Linear,
 }
+
+impl Texels {
+    /// Number of pixels.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Rgba8(texels) => texels.len(),
+            Self::Rgba16(texels) => texels.len(),
+        }
+    }
+
+    /// Whether there is no pixel.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Bits of a channel: 8 or 16.
+    pub fn bits(&self) -> u32 {
+        match self {
+            Self::Rgba8(_) => 8,
+            Self::Rgba16(_) => 16,
+        }
+    }
+}

@@ -14,7 +14,7 @@ use super::material::{self, RawMaterial};
 use super::node::{Nodes, Placed};
 use super::primitive::{self, Loaded, Source};
 use super::texture::{self, Textures};
-use super::{LoadOptions, accessor, camera, extensions, framing, light};
+use super::{LoadOptions, accessor, camera, extensions, framing, light, pose};
 use crate::scene::{Instance, Material, Scene, TextureSlot};
 
 /// Load the chosen scene of a parsed file.
@@ -35,6 +35,7 @@ pub(super) fn load(
     let nodes = Nodes::read(&root)?;
     let roots = choose_scene(&root, &nodes, options, &mut scene)?;
     let placed = nodes.place(&roots, &mut scene.warnings)?;
+    pose::warn_of_animations(&root, &mut scene.warnings)?;
     place_cameras_and_lights(&root, &nodes, &placed, &mut scene)?;
 
     let mut files = Files::new(bytes);
@@ -164,6 +165,7 @@ fn load_meshes(
     let wanted: BTreeSet<usize> = shown.iter().flatten().copied().collect();
     let mut primitives = Vec::new();
     for &mesh in &wanted {
+        pose::warn_of_morphs(&items[mesh], &mut scene.warnings)?;
         for primitive in items[mesh].items("primitives", "primitive")? {
             primitives.push((mesh, primitive));
         }
@@ -182,14 +184,16 @@ fn load_meshes(
             scene.meshes.push(triangles);
         }
     }
+    let skins = pose::Skins::read(root, nodes, placed, source)?;
     for (placed, mesh) in placed.iter().zip(shown) {
         let Some(mesh) = mesh else { continue };
         let name = nodes.item(placed.node).name();
+        let to_world = skins.rest_pose(nodes.item(placed.node), placed, &mut scene.warnings)?;
         scene
             .instances
             .extend(meshes_of[mesh].iter().map(|&mesh| Instance {
                 mesh,
-                to_world: placed.to_world,
+                to_world,
                 name: name.to_owned(),
             }));
     }
