@@ -11,14 +11,16 @@ case ${CARGO_TARGET_DIR:=$repository/target} in
 esac
 export CARGO_TARGET_DIR
 
+sudo="sudo "
+[[ $(id -u) != 0 ]] || sudo=""
+
 say() { printf 'etendue: %s\n' "$*" >&2; }
 
 # apt-get with the rights to install, quietly; its output is shown if it fails.
 apt_get() {
-    local log status=0 as_root=()
-    [[ $(id -u) == 0 ]] || as_root=(sudo -n)
+    local log status=0
     log=$(mktemp)
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    ${sudo:+sudo -n} env DEBIAN_FRONTEND=noninteractive \
         apt-get -q -y --no-install-recommends -o DPkg::Lock::Timeout=120 "$@" >"$log" 2>&1 </dev/null || status=$?
     apt_output=$(<"$log")
     rm -f "$log"
@@ -27,7 +29,7 @@ apt_get() {
 
 may_install() {
     [[ -z ${ETENDUE_NO_INSTALL:-} ]] && command -v apt-get >/dev/null || return 1
-    [[ $(id -u) == 0 ]] || sudo -n true 2>/dev/null
+    [[ -z $sudo ]] || sudo -n true 2>/dev/null
 }
 
 # install WHY PACKAGE...: installs, or says why and how.
@@ -39,7 +41,7 @@ install() {
         if apt_get install "$@" || { apt_get update && apt_get install "$@"; }; then return 0; fi
         printf '%s\n' "$apt_output" >&2
     fi
-    say "$why. Run:  sudo apt-get update && sudo apt-get install $*"
+    say "$why. Run:  ${sudo}apt-get update && ${sudo}apt-get install $*"
     return 3
 }
 
@@ -49,7 +51,7 @@ say_how_to_get_rust() {
     say "$1. étendue needs Rust $(minimum_rust) or newer. Run:
   curl --proto '=https' --tlsv1.2 -sSf https://sh.rustup.rs | sh
 or, on Debian 13, Ubuntu 24.04 and newer:
-  sudo apt-get install rustup && rustup default stable"
+  ${sudo}apt-get install rustup && rustup default stable"
     return 3
 }
 
@@ -62,15 +64,17 @@ cargo_is_new_enough() {
     [[ -n $version && $(printf '%s\n' "$(minimum_rust)" "${version%%-*}" | sort -V | head -n 1) == "$(minimum_rust)" ]]
 }
 
-# rustup as a package, and with it the stable toolchain.
+# rustup as a package, where there is one, and with it the stable toolchain.
 install_rustup() {
-    may_install && { apt-cache show rustup >/dev/null 2>&1 || { apt_get update && apt-cache show rustup >/dev/null 2>&1; }; } &&
-        install "cargo is not installed" rustup &&
-        rustup default stable >&2
+    may_install || return
+    rustup_is_packaged || { apt_get update && rustup_is_packaged; } || return
+    install "cargo is not installed" rustup && rustup default stable >&2
 }
 
+rustup_is_packaged() { LC_ALL=C apt-cache policy rustup 2>/dev/null | grep -q 'Candidate: [0-9]'; }
+
 need_rust() {
-    command -v cargo >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
+    command -v cargo >/dev/null || PATH=${CARGO_HOME:-${HOME:-}/.cargo}/bin:$PATH
     command -v cargo >/dev/null || install_rustup || say_how_to_get_rust "cargo is not installed" || return
     command -v cc >/dev/null || install "there is no C compiler and linker (cc)" build-essential || return
     [[ -x $CARGO_TARGET_DIR/release/etendue ]] || cargo_is_new_enough ||
@@ -96,7 +100,7 @@ has_driver() {
     if compgen -G '/dev/dri/renderD*' >/dev/null || compgen -G '/dev/nvidia[0-9]*' >/dev/null || [[ -e /dev/dxg ]]; then
         gpu=yes
     fi
-    for folder in /usr/share /usr/local/share /etc /usr/local/etc "${XDG_DATA_HOME:-$HOME/.local/share}"; do
+    for folder in /usr/share /usr/local/share /etc /usr/local/etc "${XDG_DATA_HOME:-${HOME:-}/.local/share}"; do
         for manifest in "$folder"/vulkan/icd.d/*.json; do
             [[ -e $manifest ]] || continue
             case $gpu:${manifest##*/} in
@@ -116,11 +120,12 @@ need_vulkan() {
     return 3
 }
 
-# What the tests use beside the program: spirv-val and the validation layers.
+# What the tests use beside the program: spirv-val, the validation layers, and Python for tools/make-scenes.
 need_test_tools() {
     local packages=()
     command -v spirv-val >/dev/null || packages+=(spirv-tools)
     compgen -G '/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation*.json' >/dev/null ||
         packages+=(vulkan-validationlayers)
+    command -v python3 >/dev/null || packages+=(python3)
     [[ ${#packages[@]} == 0 ]] || install "some tests need ${packages[*]}" "${packages[@]}"
 }

@@ -94,10 +94,7 @@ pub(super) fn best_split(primitives: &[Primitive], binning: &Binning) -> Option<
 }
 
 fn histogram(primitives: &[Primitive], binning: &Binning) -> Histogram {
-    let add = |mut histogram: Histogram, p: &Primitive| {
-        add_to_bins(&mut histogram, binning, p);
-        histogram
-    };
+    let add = |histogram: &mut Histogram, p: &Primitive| add_to_bins(histogram, binning, p);
     let merge = |mut a: Histogram, b: Histogram| {
         for (x, y) in a.as_flattened_mut().iter_mut().zip(b.as_flattened()) {
             *x = x.merge(*y);

@@ -38,13 +38,13 @@ pub(super) fn primitives(triangles: &[[Vec3; 3]]) -> Vec<Primitive> {
 
 /// The bounds of all boxes.
 pub(super) fn bounds(primitives: &[Primitive]) -> Aabb {
-    let add = |acc: Aabb, p: &Primitive| acc.union(p.bounds);
+    let add = |acc: &mut Aabb, p: &Primitive| *acc = acc.union(p.bounds);
     fold_chunks(primitives, || Aabb::EMPTY, add, Aabb::union)
 }
 
 /// The bounds of all centroids.
 pub(super) fn centroid_bounds(primitives: &[Primitive]) -> Aabb {
-    let add = |acc: Aabb, p: &Primitive| acc.with_point(p.centroid());
+    let add = |acc: &mut Aabb, p: &Primitive| *acc = acc.with_point(p.centroid());
     fold_chunks(primitives, || Aabb::EMPTY, add, Aabb::union)
 }
 
@@ -56,14 +56,17 @@ const CHUNK: usize = 1 << 15;
 pub(super) fn fold_chunks<T: Send>(
     primitives: &[Primitive],
     empty: impl Fn() -> T + Sync + Send,
-    add: impl Fn(T, &Primitive) -> T + Sync + Send,
+    add: impl Fn(&mut T, &Primitive) + Sync + Send,
     merge: impl Fn(T, T) -> T + Sync + Send,
 ) -> T {
+    let fold = |chunk: &[Primitive]| {
+        let mut sum = empty();
+        chunk.iter().for_each(|p| add(&mut sum, p));
+        sum
+    };
     if primitives.len() <= CHUNK {
-        return primitives.iter().fold(empty(), add);
+        return fold(primitives);
     }
-    primitives
-        .par_chunks(CHUNK)
-        .map(|chunk| chunk.iter().fold(empty(), &add))
-        .reduce(&empty, merge)
+    let chunks = primitives.par_chunks(CHUNK);
+    chunks.map(fold).reduce(&empty, merge)
 }

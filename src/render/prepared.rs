@@ -14,8 +14,8 @@ use super::vertex_format::{VertexFormat, VertexNeeds};
 use crate::accel::{BuildOptions, Bvh};
 use crate::scene::{Features, Scene};
 
-/// Most triangles that light and BVH indices can count.
-const MAX_TRIANGLES: u64 = 1 << 30;
+/// Most triangles that the BVH can count.
+const MAX_TRIANGLES: u64 = crate::accel::MAX_TRIANGLES as u64;
 
 /// Everything that the device will hold, in its own order and layout.
 #[derive(Debug)]

@@ -155,15 +155,10 @@ impl<'a> Renderer<'a> {
         Ok(())
     }
 
-    /// Lets the driver compile: lavapipe does so at the first dispatch.
+    /// Lets the driver compile now: lavapipe does so at the first dispatch.
     fn warm_up(&mut self) -> Result<(), RenderError> {
-        self.upload_dispatch(&Dispatch {
-            lane_stride: 1,
-            ..Default::default()
-        })?;
         if let Some(first) = self.bands.first() {
-            self.device
-                .dispatch(&self.pipeline, &first.group, [1, 1, 1])?;
+            self.device.warm_up(&self.pipeline, &first.group)?;
         }
         Ok(())
     }

@@ -22,6 +22,8 @@ mod path;
 mod reflect;
 mod source_map;
 mod spirv;
+#[cfg(test)]
+mod tests;
 
 pub use check::{Check, CheckResult, check_all, unique_reports};
 pub use compile::{CompileOptions, Compiled, compile};

@@ -54,19 +54,19 @@ pub(super) fn writer_options(module: &Module, checked: bool) -> spv::Options<'st
     }
 }
 
-/// Every binding keeps the set and the number that the shader gives it.
+/// Groups and bindings stay as the shader has them; naga asks for each to be said.
 fn binding_map(module: &Module) -> spv::BindingMap {
-    module
+    let places = module
         .global_variables
         .iter()
-        .filter_map(|(_, variable)| variable.binding)
-        .map(|binding| {
-            let info = spv::BindingInfo {
-                descriptor_set: binding.group,
-                binding: binding.binding,
-                binding_array_size: None,
-            };
-            (binding, info)
-        })
-        .collect()
+        .filter_map(|(_, v)| v.binding);
+    let same = |at: naga::ResourceBinding| {
+        let info = spv::BindingInfo {
+            descriptor_set: at.group,
+            binding: at.binding,
+            binding_array_size: None,
+        };
+        (at, info)
+    };
+    places.map(same).collect()
 }

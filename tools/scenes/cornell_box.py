@@ -19,7 +19,7 @@ def build():
     red = gltf.diffuse("red", RED, doubleSided=True)
     green = gltf.diffuse("green", GREEN, doubleSided=True)
     metal = gltf.material("brushed metal", [0.91, 0.88, 0.82], metallic=1, roughness=0.35)
-    light = gltf.emitter("lamp", [1, 0.85, 0.62], 17)
+    light = gltf.emitter("lamp", [1, 0.85, 0.62], 36)
 
     d = 2 * H
     walls = {
@@ -37,7 +37,7 @@ def build():
     tall, short = gltf.mesh("metal block", (block, metal)), gltf.mesh("white block", (block, white))
     gltf.node("tall block", mesh=tall, translation=[-0.42, 0, -0.4], rotation=about_y(19), scale=[0.72, 1.45, 0.72])
     gltf.node("short block", mesh=short, translation=[0.46, 0, 0.36], rotation=about_y(-17), scale=[0.7, 0.7, 0.7])
-    gltf.camera("camera", eye=[0, H, 4.7], target=[0, H, 0], yfov=41.2, aspect=1)
+    gltf.camera("camera", eye=[0, H, 4.7], target=[0, H, 0], yfov=39.6, aspect=1)
     return gltf
 
 

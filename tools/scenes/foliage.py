@@ -20,8 +20,8 @@ def build():
     add_ground(gltf)
     add_tree(gltf)
     add_curtain(gltf)
-    sky = gltf.emitter("soft light", [0.75, 0.87, 1], 3.2)
-    gltf.node("soft light", mesh=gltf.mesh("soft light", (plain_quad([-4, 6, -3.5], [8, 0, 0], [0, 0, 7]), sky)))
+    sky = gltf.emitter("soft light", [0.75, 0.87, 1], 4.5)
+    gltf.node("soft light", mesh=gltf.mesh("soft light", (plain_quad([-5.5, 6, -3], [5, 0, 0], [0, 0, 6]), sky)))
     gltf.light("sun", "directional", [1, 0.93, 0.8], 4, eye=[3.4, 4.2, 3.6], target=[0, 0, 0])
     gltf.camera("camera", eye=[0.6, 1.75, 6.4], target=[0.1, 1.25, 0], yfov=34, aspect=1)
     return gltf

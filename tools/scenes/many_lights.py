@@ -24,7 +24,7 @@ def build():
     gltf.light("blue bulb", "point", [0.3, 0.5, 1], 1.2, eye=[-2.9, 0.7, -1.2], range=6)
     cone = {"innerConeAngle": 0.15, "outerConeAngle": 0.42}
     gltf.light("spot", "spot", [1, 0.95, 0.9], 9, eye=[0.3, 2.9, 1.2], target=[0.1, 0, -0.9], spot=cone)
-    gltf.light("sun", "directional", [1, 0.93, 0.82], 5, eye=[-7, 4.8, 1.5], target=[0, 0, -0.6])
+    gltf.light("sun", "directional", [1, 0.93, 0.82], 8, eye=[-7, 4.8, 1.5], target=[0, 0, -0.6])
     gltf.camera("camera", eye=[3.5, 1.75, 2.6], target=[-1.1, 1.0, -1.1], yfov=52, aspect=1.5)
     return gltf
 
@@ -67,7 +67,7 @@ def add_lamps(gltf):
     parts = []
     for i in range(MATERIALS):
         rgb = colorsys.hsv_to_rgb(i * 0.618034 % 1, 0.25 + 0.6 * rng.random(), 1)
-        radiance = 1.5 * 300 ** rng.random()
+        radiance = 3 * 300 ** rng.random()
         # Each lamp is at a distance of its own from the wall, so that no two are in one plane.
         gaps = [0.02 + 0.0005 * (i * LAMPS_EACH + k) for k in range(LAMPS_EACH)]
         lamps = [lamp(rng, radiance, gap) for gap in gaps]
@@ -77,7 +77,7 @@ def add_lamps(gltf):
 
 def lamp(rng, radiance, gap):
     """A triangle or square at the distance gap from the ceiling or a wall, facing the room; the brighter the smaller."""
-    size = min(0.16, 0.35 / math.sqrt(radiance)) * (0.6 + 0.8 * rng.random())
+    size = min(0.16, 0.5 / math.sqrt(radiance)) * (0.6 + 0.8 * rng.random())
     along, up = rng.random() * 1.8 - 0.9, 0.1 + 0.85 * rng.random()
     place = rng.choice(["ceiling", "ceiling", "back", "left", "right", "skirting"])
     if place == "ceiling":

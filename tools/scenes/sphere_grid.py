@@ -21,8 +21,8 @@ def build():
     gltf.node("backdrop", mesh=gltf.mesh("backdrop", (backdrop, grey)))
     add_spheres(gltf)
     panel = plain_quad([-0.5, -0.5, 0], [1, 0, 0], [0, 1, 0])
-    key = gltf.mesh("key panel", (panel, gltf.emitter("key light", [1, 0.95, 0.88], 9)))
-    fill = gltf.mesh("fill panel", (panel, gltf.emitter("fill light", [0.6, 0.75, 1], 4)))
+    key = gltf.mesh("key panel", (panel, gltf.emitter("key light", [1, 0.95, 0.88], 26)))
+    fill = gltf.mesh("fill panel", (panel, gltf.emitter("fill light", [0.6, 0.75, 1], 11)))
     # A turn of +90° makes the panel's front, +Z, look along +X; the parent of the key light then tips it down.
     left = gltf.node("key stand", translation=[-5, 3.2, 4.2], rotation=about_y(128))
     gltf.node("key panel", left, mesh=key, rotation=[0.258819045, 0, 0, 0.965925826], scale=[3, 2.4, 1])

@@ -75,6 +75,7 @@ impl<'a> Primitive<'a> {
             return Ok(None);
         };
         positions.expect_shape("POSITION", &[Shape::Vec3])?;
+        positions.check_zeros(self.source.data)?;
         self.check_counts(positions.count)?;
         let mut indices = self.triangles(topology, positions.count)?;
         if indices.is_empty() {
