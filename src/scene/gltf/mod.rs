@@ -21,6 +21,7 @@ mod material;
 mod node;
 mod pose;
 mod primitive;
+mod tangent_faces;
 mod tangents;
 mod texture;
 mod texture_info;
