@@ -75,7 +75,11 @@ fn imports_go_down() {
         for file in rust_files(&source().join(layer)) {
             for used in imported_layers(&code(&file)) {
                 let above = LAYERS.iter().skip(rank + 1).any(|l| *l == used);
-                assert!(!above, "{} ({layer}) imports {used}, which is above it", file.display());
+                assert!(
+                    !above,
+                    "{} ({layer}) imports {used}, which is above it",
+                    file.display()
+                );
             }
         }
     }
@@ -99,6 +103,8 @@ fn what_belongs_to_one_layer_stays_there() {
 
 #[test]
 fn the_scan_finds_imports() {
-    let found = imported_layers("use crate::{cli::x, gpu};\nuse crate::render::Film;\nlet a = crate::scene::b();");
+    let found = imported_layers(
+        "use crate::{cli::x, gpu};\nuse crate::render::Film;\nlet a = crate::scene::b();",
+    );
     assert_eq!(found, ["cli", "gpu", "render", "scene"]);
 }
