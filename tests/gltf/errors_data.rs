@@ -157,3 +157,15 @@ fn required_extensions_must_be_supported() {
         ],
     );
 }
+
+#[test]
+fn compressed_vertices_without_a_copy_are_refused() {
+    let mut builder = Builder::square();
+    builder.json["accessors"][0]["bufferView"] = json!(null);
+    let primitive = &mut builder.json["meshes"][0]["primitives"][0];
+    primitive["extensions"] = json!({"KHR_draco_mesh_compression": {}});
+    refused(
+        builder,
+        &["primitive 0, KHR_draco_mesh_compression: its vertices are compressed"],
+    );
+}

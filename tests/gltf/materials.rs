@@ -51,13 +51,12 @@ fn factors_out_of_range_are_clamped_with_a_warning() {
     builder.json["materials"][0]["pbrMetallicRoughness"] =
         json!({"roughnessFactor": 2, "metallicFactor": -1});
     builder.json["materials"][0]["emissiveFactor"] = json!([3, 0, 0]);
-    builder.json["materials"][0]["extensions"] =
-        json!({"KHR_materials_ior": {"ior": 0}, "KHR_materials_unlit": {}});
+    builder.json["materials"][0]["extensions"] = json!({"KHR_materials_ior": {"ior": 0}});
     let scene = builder.scene();
     let m = &scene.materials[0];
     assert_eq!(
-        (m.roughness, m.metallic, m.emissive.x, m.ior, m.unlit),
-        (1.0, 0.0, 3.0, 0.0, true)
+        (m.roughness, m.metallic, m.emissive.x, m.ior),
+        (1.0, 0.0, 3.0, 0.0)
     );
     warned(
         &scene,
@@ -75,4 +74,19 @@ fn primitives_without_material_get_the_default_one() {
     assert_eq!(scene.materials[1], Material::default());
     assert!(scene.images.is_empty(), "no used material shows the image");
     assert_eq!(scene.materials[0].texture_slots().count(), 0);
+}
+
+#[test]
+fn unlit_materials_neither_emit_nor_read_other_textures() {
+    let mut builder = seeds::textured();
+    builder.json["materials"][0]["extensions"]["KHR_materials_unlit"] = json!({});
+    let scene = builder.scene();
+    let m = &scene.materials[0];
+    assert!(m.unlit && m.base_color_texture.is_some());
+    assert_eq!(
+        (m.emissive, m.texture_slots().count(), scene.images.len()),
+        (Vec3::ZERO, 1, 1)
+    );
+    let features = Features::of(&scene);
+    assert!(features.unlit && !features.lit && !features.emissive && !features.specular);
 }
