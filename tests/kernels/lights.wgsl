@@ -56,7 +56,7 @@ fn evaluate_triangles(@builtin(global_invocation_id) id: vec3u) {
     if (id.x >= params.x) {
         return;
     }
-    let ray = Ray(inputs[0].xyz, T_INFINITE, inputs[2u + id.x].xyz);
+    let ray = free_ray(inputs[0].xyz, inputs[2u + id.x].xyz);
     let hit = intersect(ray, false, 0u);
     var result = vec4f(0.0);
     if (hit.triangle != NONE) {

@@ -14,7 +14,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (id.x >= params.x) {
         return;
     }
-    let ray = Ray(inputs[2u * id.x].xyz, inputs[2u * id.x].w, inputs[2u * id.x + 1u].xyz);
+    let ray = Ray(inputs[2u * id.x].xyz, inputs[2u * id.x].w, inputs[2u * id.x + 1u].xyz, NONE, NONE);
     let hit = intersect(ray, false, 0u);
     let any = occluded(ray, 0u);
     outputs[2u * id.x] = vec4u(bitcast<u32>(hit.t), hit.triangle, u32(hit.back_face), u32(any));
