@@ -118,8 +118,9 @@ impl Accessor<'_> {
     /// Check that the result may be allocated.
     fn claim<T, const N: usize>(&self, data: &Data, count: usize) -> Result<(), LoadError> {
         self.check_zeros(data)?;
-        let bytes = (count as u64).saturating_mul(size_of::<[T; N]>() as u64);
-        if data.charge(bytes) {
+        let replaced = self.sparse.as_ref().map_or(0, |sparse| sparse.count);
+        let elements = count as u64 + replaced as u64;
+        if data.charge(elements.saturating_mul(size_of::<[T; N]>() as u64)) {
             return Ok(());
         }
         Err(self.item.fault(

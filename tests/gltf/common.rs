@@ -1,13 +1,15 @@
 //! Small glTF files for the loader's tests.
-#![allow(dead_code)] // Each test binary uses its own part.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use etendue::scene::Scene;
 use etendue::scene::gltf::{LoadError, LoadOptions, load};
+use glam::Vec3;
 use serde_json::{Value, json};
 use tempfile::TempDir;
+
+use crate::pictures::png_rgba8;
 
 pub const I8: u32 = 5120;
 pub const U8: u32 = 5121;
@@ -187,30 +189,49 @@ pub fn shared(folder: &str) -> Option<PathBuf> {
     path.is_dir().then_some(path)
 }
 
-/// Encode pixels as PNG.
-pub fn png(width: u32, height: u32, color: image::ExtendedColorType, pixels: &[u8]) -> Vec<u8> {
-    use image::ImageEncoder;
-    let mut bytes = Vec::new();
-    image::codecs::png::PngEncoder::new(&mut bytes)
-        .write_image(pixels, width, height, color)
-        .expect("pixels that fit");
-    bytes
+/// Change the square at a JSON pointer's parent and expect a sentence with these parts.
+pub fn refused(builder: Builder, parts: &[&str]) {
+    let sentence = builder.error();
+    assert!(sentence.contains("scene.gltf: "), "{sentence}");
+    assert!(!sentence.contains('\n'), "{sentence}");
+    for part in parts {
+        assert!(sentence.contains(part), "{part:?} is not in: {sentence}");
+    }
 }
 
-/// Red, green; blue, half-transparent white.
-pub fn png_rgba8() -> Vec<u8> {
-    let pixels = [
-        255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 128,
-    ];
-    png(2, 2, image::ExtendedColorType::Rgba8, &pixels)
+/// The textured square with a value set at a JSON pointer.
+pub fn with(pointer: &str, value: Value) -> Builder {
+    let mut builder = Builder::textured();
+    set(&mut builder.json, pointer, value);
+    builder
 }
 
-/// A grey JPEG of 8 × 8 pixels.
-pub fn jpeg_gray() -> Vec<u8> {
-    use image::ImageEncoder;
-    let mut bytes = Vec::new();
-    image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, 95)
-        .write_image(&[100; 64], 8, 8, image::ExtendedColorType::L8)
-        .expect("pixels that fit");
-    bytes
+pub fn set(json: &mut Value, pointer: &str, value: Value) {
+    let mut at = json;
+    for key in pointer.split('/') {
+        at = match key.parse::<usize>() {
+            Ok(index) => &mut at[index],
+            Err(_) => &mut at[key],
+        };
+    }
+    *at = value;
+}
+
+/// The scene has a warning with this part.
+pub fn warned(scene: &Scene, part: &str) {
+    assert!(
+        scene.warnings.iter().any(|warning| warning.contains(part)),
+        "{part:?} is not in {:?}",
+        scene.warnings
+    );
+}
+
+/// The scene has no warning.
+pub fn silent(scene: &Scene) {
+    assert_eq!(scene.warnings, Vec::<String>::new());
+}
+
+/// The corners of the square.
+pub fn square_positions() -> Vec<Vec3> {
+    SQUARE.chunks(3).map(Vec3::from_slice).collect()
 }

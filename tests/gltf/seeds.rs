@@ -2,10 +2,10 @@
 
 use serde_json::json;
 
-use crate::gltf_common::*;
+use crate::common::*;
+use crate::pictures::*;
 
 /// All of them, by name.
-#[allow(dead_code)] // Only the fuzz test takes them all.
 pub fn all() -> Vec<(&'static str, Builder)> {
     vec![
         ("square", Builder::square()),
@@ -32,6 +32,9 @@ pub fn textured() -> Builder {
     builder.push("images", json!({"bufferView": jpeg}));
     builder.json["samplers"] = json!([{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}]);
     builder.push("textures", json!({"source": 1, "sampler": 0}));
+    let jpeg = builder.view(&jpeg_rgb());
+    builder.push("images", json!({"bufferView": jpeg}));
+    builder.push("textures", json!({"source": 2, "sampler": 0}));
     let moved = json!({"KHR_texture_transform": {"offset": [0.5, 0], "rotation": 1, "scale": [2, 3], "texCoord": 1}});
     builder.json["materials"][0] = json!({
         "pbrMetallicRoughness": {
@@ -44,6 +47,7 @@ pub fn textured() -> Builder {
         "emissiveFactor": [1, 0.5, 0],
         "emissiveTexture": {"index": 1},
         "occlusionTexture": {"index": 1},
+        "normalTexture": {"index": 2},
         "alphaMode": "MASK",
         "alphaCutoff": 0.4,
         "doubleSided": true,
