@@ -176,14 +176,21 @@ fn an_environment_may_be_a_picture() {
     exr::write(&sky, &picture, &Metadata::default()).expect("a picture");
     let arguments = ["--env", &sky, "--env-scale", "0.5", "--json", "-"];
     let run = render_scene(&scene, &arguments).ends_with(0);
-    assert_eq!(run.json()["mean_radiance"], serde_json::json!([0.5, 1.0, 0.0]));
+    assert_eq!(
+        run.json()["mean_radiance"],
+        serde_json::json!([0.5, 1.0, 0.0])
+    );
     assert!(run.stderr.contains("8 texels"), "{}", run.stderr);
 }
 
 #[test]
 fn exposure_and_tone_map_shape_the_png_alone() {
     let folder = folder();
-    let (scene, png, exr_path) = (empty_scene(&folder), path_in(&folder, "a.png"), path_in(&folder, "a.exr"));
+    let (scene, png, exr_path) = (
+        empty_scene(&folder),
+        path_in(&folder, "a.png"),
+        path_in(&folder, "a.exr"),
+    );
     let outputs = ["-o", &png, "-o", &exr_path, "--env", "0.25"];
     let first_pixel = |arguments: &[&str]| {
         render_scene(&scene, &[&outputs, arguments].concat()).ends_with(0);
@@ -193,7 +200,10 @@ fn exposure_and_tone_map_shape_the_png_alone() {
     };
     // The sRGB curve at 0.25 and at 0.5.
     assert_eq!(first_pixel(&["--tonemap", "none"]), [137; 3]);
-    assert_eq!(first_pixel(&["--tonemap", "none", "--exposure", "1"]), [188; 3]);
+    assert_eq!(
+        first_pixel(&["--tonemap", "none", "--exposure", "1"]),
+        [188; 3]
+    );
     assert_ne!(first_pixel(&["--tonemap", "agx"]), [137; 3]);
 }
 

@@ -26,7 +26,9 @@ impl Interrupt {
         let seen = Arc::clone(&state);
         let handler = move || match seen.compare_exchange(ARMED, REQUESTED, SeqCst, SeqCst) {
             Ok(_) if quiet => {}
-            Ok(_) => message::note(&on_its_own_line("stopping: once more to quit without saving")),
+            Ok(_) => message::note(&on_its_own_line(
+                "stopping: once more to quit without saving",
+            )),
             Err(_) => process::exit(i32::from(Exit::Interrupted.code())),
         };
         // A second handler, as in tests of the library, is the only way to fail.
