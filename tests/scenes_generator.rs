@@ -26,5 +26,8 @@ fn the_scenes_are_what_their_generator_writes() {
         compared += 1;
     }
     let committed = fs::read_dir(root.join("scenes")).expect("scenes/").count();
-    assert_eq!(compared, committed, "scenes/ holds files that the generator does not write");
+    assert_eq!(
+        compared, committed,
+        "scenes/ holds files that the generator does not write"
+    );
 }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 
-use super::aov::{self, Stage};
+use super::aov::{self, Layers, Stage};
 use super::args::RenderArgs;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
@@ -16,7 +16,7 @@ use super::{environment, settings, shaders};
 use crate::accel::BuildOptions;
 use crate::gpu::Device;
 use crate::image::{Channel, Layer, Metadata, Picture};
-use crate::render::{Film, GpuScene, Prepared};
+use crate::render::{Film, GpuScene, Prepared, Renderer, Settings};
 use crate::scene::{Features, Scene, gltf};
 
 /// Integrators that show something in a scene without light.
@@ -64,10 +64,13 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
 
     // From samples to a picture.
     interrupt.arm();
-    let _ = aov::run(&mut renderer, &settings, &interrupt, args.quiet)?;
-    let film = renderer.film()?;
-    let layers = timed(&mut time.aov, || {
-        aov::render(args, stage, &aovs, &interrupt, &mut warnings)
+    let (film, failure) = draw(&mut renderer, &settings, &interrupt, args.quiet)?;
+    let layers = timed(&mut time.aov, || match failure {
+        Some(_) => Layers {
+            failure,
+            ..Layers::default()
+        },
+        None => aov::render(args, stage, &aovs, &interrupt, &mut warnings),
     });
 
     // From the picture to files.
@@ -81,6 +84,23 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     let picture = picture(args, &film, &layers.films);
     let errors = write(&outputs, &picture, &metadata, &mut report, start);
     Ok(verdict(&report, layers.failure.into_iter().chain(errors)))
+}
+
+/// Draws the samples. Should the device give up on the way, what it has drawn until then is worth
+/// keeping: gives the film and the reason.
+fn draw(
+    renderer: &mut Renderer<'_>,
+    settings: &Settings,
+    interrupt: &Interrupt,
+    quiet: bool,
+) -> Result<(Film, Option<anyhow::Error>)> {
+    match aov::run(renderer, settings, interrupt, quiet) {
+        Ok(_) => Ok((renderer.film()?, None)),
+        Err(error) => match renderer.film() {
+            Ok(film) if film.samples() > 0 => Ok((film, Some(error.into()))),
+            _ => Err(error.into()),
+        },
+    }
 }
 
 /// Writes all that was asked for. An output that fails does not keep the others from being written.
