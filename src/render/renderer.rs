@@ -20,6 +20,10 @@ use crate::shader::{self, Diagnostic, OverrideInfo, ShaderLibrary};
 const PIECE: Duration = Duration::from_millis(100);
 /// Wall time after which all pixels should have got their next samples.
 const PASS: Duration = Duration::from_millis(500);
+/// Iterations of the driver's count that one counted step may stand for: its own, the one in which
+/// its loop is left (the driver counts N + 1 for N iterations), and one for an inner loop that runs
+/// no iteration.
+const DRIVER_STEPS: u32 = 3;
 /// Loop iterations that are kept back from a driver's limit, for those that no shader counts.
 const STEP_RESERVE: u32 = 256;
 /// Lanes of a tile and of a workgroup.
@@ -265,7 +269,7 @@ impl<'a> Renderer<'a> {
             self.device.info().subgroup_size.max(1)
         };
         self.loop_limit
-            .map_or(u32::MAX, |limit| limit.saturating_sub(STEP_RESERVE) / lanes)
+            .map_or(u32::MAX, |limit| limit.saturating_sub(STEP_RESERVE) / DRIVER_STEPS / lanes)
     }
 
     fn take_status(&self) -> Result<Status, RenderError> {
