@@ -1,1 +1,1 @@
-//! study
+//! Experiments on top of [`render`](crate::render): comparing, verifying, trade-offs. Empty so far.
