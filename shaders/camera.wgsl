@@ -12,7 +12,7 @@ fn camera_ray(pixel: vec2u, offset: vec2f) -> Ray {
     let p = vec2f(ndc.x, -ndc.y) * frame.half_extent;
     let on_film = p.x * frame.camera_x + p.y * frame.camera_y;
     if (frame.projection == PROJECTION_ORTHOGRAPHIC) {
-        return Ray(on_film, T_INFINITE, -frame.camera_z);
+        return free_ray(on_film, -frame.camera_z);
     }
-    return Ray(vec3f(0.0), T_INFINITE, normalize(on_film - frame.camera_z));
+    return free_ray(vec3f(0.0), normalize(on_film - frame.camera_z));
 }

@@ -22,12 +22,15 @@ struct LightSample {
     position_error: vec3f,
     normal: vec3f,
     at_infinity: bool,
+    // The triangle that emits, or NONE.
+    triangle: u32,
 }
 
 const HAS_LIGHTS: bool = HAS_LIGHT_TRIANGLES || HAS_PUNCTUAL_LIGHTS || HAS_ENVIRONMENT;
 
 fn no_light_sample() -> LightSample {
     var s: LightSample;
+    s.triangle = NONE;
     return s;
 }
 
@@ -58,12 +61,15 @@ fn sample_light(s: Surface, sampler: ptr<function, Sampler>) -> LightSample {
 // 1 if a light sample's radiance reaches the surface, else 0; blended surfaces in between decide
 // by chance.
 fn visibility_of_light(s: Surface, light: LightSample, seed: u32) -> f32 {
-    let origin = offset_origin(s.position, s.position_error, s.normal, light.wi);
+    var ray = spawn_ray(s, light.wi);
     if (light.at_infinity) {
-        return visibility(Ray(origin, T_INFINITE, light.wi), seed);
+        return visibility(ray, seed);
     }
     let target_point = offset_origin(light.position, light.position_error, light.normal, -light.wi);
-    return visibility(Ray(origin, 1.0, target_point - origin), seed);
+    ray.direction = target_point - ray.origin;
+    ray.t_max = 1.0;
+    ray.end = light.triangle;
+    return visibility(ray, seed);
 }
 
 fn visibility(ray: Ray, seed: u32) -> f32 {

@@ -64,7 +64,7 @@ fn path_Li(camera_ray: Ray, sampler: ptr<function, Sampler>, max_depth: u32, lig
         }
         beta *= sample.weight;
         last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta);
-        ray = Ray(offset_origin(surface.position, surface.position_error, surface.normal, wi), T_INFINITE, wi);
+        ray = spawn_ray(surface, wi);
         // End paths that carry little, and make the survivors carry their share.
         if (depth >= ROULETTE_DEPTH) {
             let survival = min(max_component(beta), ROULETTE_MAX_SURVIVAL);

@@ -22,7 +22,8 @@ struct Surface {
     uv1: vec2f,
     // COLOR_0, or white.
     color: vec4f,
-    // Area of the triangle.
+    // The triangle and its area.
+    triangle: u32,
     area: f32,
     material: u32,
     // Index into `lights`, or NONE.
@@ -30,18 +31,21 @@ struct Surface {
     back_face: bool,
 }
 
-// gamma(7) = 7 eps / (1 - 7 eps), eps = 2^-24 (Pharr, Jakob, Humphreys 2023, section 6.8).
-const GAMMA_7: f32 = 4.1723254e-7;
+// Rounding errors in units of 2^-24 between a point that is interpolated on a triangle and a ray
+// that leaves or meets it there: 7 for the point (Pharr, Jakob, Humphreys 2023, section 6.8.5), and
+// no more than 9 for the ray parameter (src/geometry/triangle.rs).
+const POSITION_ERROR: f32 = 16.0 * 5.9604644775390625e-8;
 
 fn surface_at(ray: Ray, hit: Hit) -> Surface {
     let triangle = load_triangle(hit.triangle);
     let b = hit.b;
     var s: Surface;
     s.position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
-    s.position_error = GAMMA_7 * (abs(b.x * triangle.v0) + abs(b.y * triangle.v1) + abs(b.z * triangle.v2));
+    s.position_error = position_error(triangle, b);
     let cross_edges = triangle_cross(triangle);
     let cross_length = stable_length(cross_edges);
     s.normal = cross_edges / cross_length;
+    s.triangle = hit.triangle;
     s.area = 0.5 * cross_length;
     s.wo = -normalize(ray.direction);
     s.material = triangle.material;
@@ -50,6 +54,17 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
     s.color = vec4f(1.0);
     read_vertices(&s, triangle, hit.triangle, b);
     return s;
+}
+
+// Bound on the error of each coordinate of an interpolated point.
+fn position_error(triangle: Triangle, b: vec3f) -> vec3f {
+    return POSITION_ERROR * (abs(b.x * triangle.v0) + abs(b.y * triangle.v1) + abs(b.z * triangle.v2));
+}
+
+// The ray that leaves a surface towards wi.
+fn spawn_ray(s: Surface, wi: vec3f) -> Ray {
+    let origin = offset_origin(s.position, s.position_error, s.normal, wi);
+    return Ray(origin, T_INFINITE, wi, s.triangle, NONE);
 }
 
 // Edge cross product: twice the area, towards the side from which v0, v1, v2 turn left.

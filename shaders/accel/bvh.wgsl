@@ -93,7 +93,7 @@ fn visit_node(node: BvhNode, setup: BoxSetup, t_max: f32) -> Visit {
 }
 
 // The closer of best and the hits among a leaf's triangles; at equal t the smaller position wins.
-fn test_leaf(leaf: u32, setup: RaySetup, closest: Hit, camera_ray: bool, seed: u32) -> Hit {
+fn test_leaf(leaf: u32, ray: Ray, setup: RaySetup, closest: Hit, camera_ray: bool, seed: u32) -> Hit {
   let first = leaf & 0x07ffffffu;
   let end = first + ((leaf >> 27u) & 15u);
   var best = closest;
@@ -103,7 +103,8 @@ fn test_leaf(leaf: u32, setup: RaySetup, closest: Hit, camera_ray: bool, seed: u
     }
     let triangle = load_triangle(i);
     let hit = intersect_triangle(setup, triangle.v0, triangle.v1, triangle.v2);
-    if (hit.t > 0.0 && (hit.t < best.t || (hit.t == best.t && i < best.triangle))) {
+    let eligible = i != ray.start && i != ray.end;
+    if (eligible && hit.t > 0.0 && (hit.t < best.t || (hit.t == best.t && i < best.triangle))) {
       if (HAS_ALPHA || HAS_SINGLE_SIDED) {
         if (!accept_hit(triangle, i, hit.b, hit.back_face, camera_ray, seed)) {
           continue;
@@ -137,7 +138,7 @@ fn trace(ray: Ray, any_hit: bool, camera_ray: bool, seed: u32) -> Hit {
     }
     // Test the triangles of a leaf.
     if (current >= LEAF_FLAG && current != NOTHING) {
-      best = test_leaf(current, setup, best, camera_ray, seed);
+      best = test_leaf(current, ray, setup, best, camera_ray, seed);
       current = NOTHING;
       if (any_hit && best.triangle != MISS) {
         break;

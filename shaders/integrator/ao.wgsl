@@ -17,6 +17,7 @@ fn Li(camera_ray: Ray, sampler: ptr<function, Sampler>) -> vec3f {
     if (dot(wi, s.normal) <= 0.0) {
         return vec3f(0.0);
     }
-    let origin = offset_origin(s.position, s.position_error, s.normal, wi);
-    return select(vec3f(1.0), vec3f(0.0), occluded(Ray(origin, AO_DISTANCE, wi), seed ^ 1u));
+    var ray = spawn_ray(s, wi);
+    ray.t_max = AO_DISTANCE;
+    return select(vec3f(1.0), vec3f(0.0), occluded(ray, seed ^ 1u));
 }

@@ -41,7 +41,7 @@ fn Li(camera_ray: Ray, sampler: ptr<function, Sampler>) -> vec3f {
         if (all(beta == vec3f(0.0)) || dot(direction, surface.normal) <= 0.0) {
             break;
         }
-        ray = Ray(offset_origin(surface.position, surface.position_error, surface.normal, direction), T_INFINITE, direction);
+        ray = spawn_ray(surface, direction);
     }
     return L;
 }

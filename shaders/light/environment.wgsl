@@ -20,7 +20,7 @@ fn environment_pdf(normal: vec3f, direction: vec3f) -> f32 {
 }
 
 fn environment_sample(s: Surface, u: vec2f, sampler: ptr<function, Sampler>) -> LightSample {
-    var sample: LightSample;
+    var sample = no_light_sample();
     sample.at_infinity = true;
     if (!HAS_ENVIRONMENT_IMAGE) {
         sample.wi = to_world(s.shading, sample_cosine_hemisphere(u));

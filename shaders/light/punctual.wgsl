@@ -2,7 +2,7 @@
 
 fn punctual_sample(s: Surface, index: u32) -> LightSample {
     let light = punctual_lights[index];
-    var sample: LightSample;
+    var sample = no_light_sample();
     sample.pdf = 1.0;
     sample.delta = true;
     if (light.kind == PUNCTUAL_DIRECTIONAL) {

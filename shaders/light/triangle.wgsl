@@ -18,13 +18,13 @@ fn light_triangle_sample(s: Surface, index: u32, u: vec2f) -> LightSample {
     }
     let emitted = light_triangle_radiance(triangle, index, b) * coverage(triangle, index, b);
     let pdf = light_triangle_pdf(distance, abs(cos_light), 0.5 * cross_length);
-    var sample: LightSample;
+    var sample = no_light_sample();
+    sample.triangle = index;
     sample.wi = wi;
     sample.weight = emitted / pdf;
     sample.pdf = pdf;
     sample.position = position;
-    sample.position_error =
-        GAMMA_7 * (abs(b.x * triangle.v0) + abs(b.y * triangle.v1) + abs(b.z * triangle.v2));
+    sample.position_error = position_error(triangle, b);
     sample.normal = normal;
     return sample;
 }

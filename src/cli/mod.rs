@@ -1,1 +1,69 @@
-//! cli
+//! The command line: a file per subcommand.
+//!
+//! [`main`] parses, runs and turns what happened into an exit code; `exit` lists the codes.
+
+mod aov;
+mod args;
+mod devices;
+mod environment;
+mod exit;
+mod info;
+mod info_text;
+mod interrupt;
+mod message;
+mod metadata;
+mod outputs;
+mod parse;
+mod progress;
+mod render;
+mod report;
+mod settings;
+mod shaders;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use exit::Exit;
+
+/// Étendue: a headless path tracer. glTF in, OpenEXR out, on any Vulkan device.
+#[derive(Debug, Parser)]
+#[command(name = "etendue", version, after_help = exit::HELP, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Render a glTF scene
+    Render(Box<args::RenderArgs>),
+    /// List the Vulkan devices
+    Devices(devices::DevicesArgs),
+    /// Say what is in a scene, and what it requires of the shader; needs no device
+    Info(info::InfoArgs),
+    /// List, export or check the shaders; needs no device
+    Shaders(shaders::ShadersArgs),
+}
+
+/// Runs the program with the arguments of the process. No panic reaches the user.
+pub fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(|info| message::internal_error(info)));
+    let run = AssertUnwindSafe(|| run(&Cli::parse()));
+    let exit = catch_unwind(run).unwrap_or(Exit::Internal);
+    exit.into()
+}
+
+fn run(cli: &Cli) -> Exit {
+    let result = match &cli.command {
+        Command::Render(args) => render::run(args),
+        Command::Devices(args) => devices::run(args),
+        Command::Info(args) => info::run(args),
+        Command::Shaders(args) => shaders::run(args),
+    };
+    result.unwrap_or_else(|error| {
+        message::error(&error);
+        Exit::of(&error)
+    })
+}

@@ -1,6 +1,7 @@
 //! The device: what the layers above see of Vulkan.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use ash::vk;
 use bytemuck::Pod;
@@ -11,34 +12,13 @@ use super::info::DeviceInfo;
 use super::instance::Instance;
 use super::logical::Logical;
 use super::memory::{Buffer, Purpose, RawBuffer};
+use super::options::OpenOptions;
 use super::pipeline::{BindingKind, Pipeline};
 use super::probe::{self, Probe};
 use super::queue::{Queue, Timing};
 use super::select::select;
 use super::transfer;
 use super::validation::ValidationLog;
-
-/// How to open a device.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct OpenOptions {
-    /// Whether the Khronos validation layer checks every call (slow).
-    pub validation: bool,
-    /// Whether data goes through a staging buffer even where the device shares the host's memory: for tests of
-    /// the way that discrete GPUs need, on a machine without one.
-    pub staging: bool,
-}
-
-impl OpenOptions {
-    /// Validation if the environment variable `ETENDUE_VALIDATION` is neither empty nor "0".
-    pub fn from_env() -> Self {
-        let value = std::env::var_os("ETENDUE_VALIDATION");
-        let validation = value.is_some_and(|value| !value.is_empty() && value != "0");
-        Self {
-            validation,
-            staging: false,
-        }
-    }
-}
 
 /// An open device. Clones are the same device; threads that share it take turns.
 #[derive(Clone)]
@@ -131,9 +111,14 @@ impl Device {
     /// # Errors
     /// As [`Device::buffer`] and [`Device::upload`].
     pub fn buffer_with<T: Pod>(&self, label: &str, data: &[T]) -> Result<Buffer, GpuError> {
-        let buffer = self.buffer(label, size_of_val(data) as u64)?;
-        self.upload(&buffer, 0, bytemuck::cast_slice(data))?;
-        Ok(buffer)
+        let data: &[u8] = bytemuck::cast_slice(data);
+        if data.is_empty() {
+            return self.buffer(label, 0);
+        }
+        // Not filled with zeros first: the data covers it, and touching a gibibyte takes seconds on a slow host.
+        let raw = RawBuffer::new(&self.logical, label, data.len() as u64, Purpose::Work)?;
+        transfer::upload(&mut self.lock(), &raw, 0, data)?;
+        Ok(Buffer(Arc::new(raw)))
     }
 
     /// Writes `data` into a buffer from byte `offset` on. Any offset and length will do.
@@ -247,6 +232,17 @@ impl Device {
                 device.cmd_dispatch(commands, groups[0], groups[1], groups[2]);
             }
         })
+    }
+
+    /// Makes the driver compile the pipeline by a dispatch of no groups; returns the time that took.
+    ///
+    /// Lavapipe compiles at the first dispatch (measured on 22.3.6: even one of no groups), so without this
+    /// call the compilation counts into the first piece of work.
+    ///
+    /// # Errors
+    /// As [`Device::dispatch`].
+    pub fn warm_up(&self, pipeline: &Pipeline, group: &BindGroup) -> Result<Duration, GpuError> {
+        Ok(self.dispatch(pipeline, group, [0; 3])?.wall)
     }
 
     fn check_dispatch(

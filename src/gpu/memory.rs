@@ -203,7 +203,7 @@ impl RawBuffer {
         else {
             return debug_assert!(false, "read outside a mapped buffer");
         };
-        // SAFETY: as in `write`; the memory was written by this type (creation fills it with zeros).
+        // SAFETY: as in `write`; the driver owns the memory, so any content of it is a valid byte.
         unsafe {
             let source = address.as_ptr().add(offset as usize);
             out.as_mut_ptr().copy_from_nonoverlapping(source, out.len());

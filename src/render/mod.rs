@@ -19,6 +19,7 @@ mod prepared;
 pub mod program;
 mod renderer;
 mod settings;
+pub mod shader_check;
 mod textures;
 mod vertex_format;
 

@@ -10,8 +10,10 @@ use crate::shader::{
     CompileOptions, Compiled, Composed, ShaderLibrary, VirtualFiles, compile, compose,
 };
 
-/// The file that holds the entry point, and the entry point.
-const KERNEL: (&str, &str) = ("main.wgsl", "main");
+/// The file that holds the entry point.
+pub const ENTRY_FILE: &str = "main.wgsl";
+/// The entry point.
+const ENTRY_POINT: &str = "main";
 
 /// Compiles the kernel for a scene and settings; also gives the composed text.
 ///
@@ -22,9 +24,9 @@ pub fn build(
     virtuals: &VirtualFiles,
     settings: &Settings,
 ) -> Result<(Composed, Compiled), RenderError> {
-    let composed = compose(library, virtuals, KERNEL.0)?;
+    let composed = compose(library, virtuals, ENTRY_FILE)?;
     let options = CompileOptions {
-        entry_point: KERNEL.1,
+        entry_point: ENTRY_POINT,
         checked: settings.checked,
         overrides: &settings.overrides,
         layouts: &layouts(),

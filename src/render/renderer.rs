@@ -14,7 +14,7 @@ use super::program;
 use super::settings::Settings;
 use crate::gpu::{BindGroup, BindingKind, Buffer, Device, Pipeline};
 use crate::scene::Scene;
-use crate::shader::{self, OverrideInfo, ShaderLibrary};
+use crate::shader::{self, Diagnostic, OverrideInfo, ShaderLibrary};
 
 /// Wall time that one submission should take: short enough for any watchdog and for Ctrl-C.
 const PIECE: Duration = Duration::from_millis(100);
@@ -50,6 +50,7 @@ pub struct Renderer<'a> {
     status: Buffer,
     wgsl: String,
     overrides: Vec<OverrideInfo>,
+    warnings: Vec<Diagnostic>,
     /// Iterations at which the driver leaves loops, if it does.
     loop_limit: Option<u32>,
     spp_done: u64,
@@ -106,6 +107,7 @@ impl<'a> Renderer<'a> {
             status: device.buffer("status", size_of::<Status>() as u64)?,
             wgsl: composed.text,
             overrides: compiled.overrides,
+            warnings: compiled.warnings,
             loop_limit,
             spp_done: 0,
             samples_done: 0,
@@ -153,15 +155,10 @@ impl<'a> Renderer<'a> {
         Ok(())
     }
 
-    /// Lets the driver compile: lavapipe does so at the first dispatch.
+    /// Lets the driver compile now: lavapipe does so at the first dispatch.
     fn warm_up(&mut self) -> Result<(), RenderError> {
-        self.upload_dispatch(&Dispatch {
-            lane_stride: 1,
-            ..Default::default()
-        })?;
         if let Some(first) = self.bands.first() {
-            self.device
-                .dispatch(&self.pipeline, &first.group, [1, 1, 1])?;
+            self.device.warm_up(&self.pipeline, &first.group)?;
         }
         Ok(())
     }
@@ -288,6 +285,7 @@ impl<'a> Renderer<'a> {
     fn pass_samples(&self) -> u64 {
         let pixels = f64::from(self.settings.width) * f64::from(self.settings.height);
         let fitting = (self.rate * PASS.as_secs_f64() / pixels) as u64;
+        let fitting = self.settings.pass_samples.unwrap_or(fitting);
         fitting.clamp(1, self.settings.spp - self.spp_done)
     }
 
@@ -297,7 +295,10 @@ impl<'a> Renderer<'a> {
         let most = u64::from(self.device.info().max_workgroups[0])
             / u64::from(self.device.info().subgroup_size.max(2))
             * u64::from(TILE_LANES);
-        let tiles = (fitting as u64 / u64::from(TILE_LANES)).max(16);
+        let tiles = match self.settings.piece_tiles {
+            Some(tiles) => u64::from(tiles.max(1)),
+            None => (fitting as u64 / u64::from(TILE_LANES)).max(16),
+        };
         (tiles * u64::from(TILE_LANES)).min(most.max(u64::from(TILE_LANES))) as u32
     }
 
@@ -352,6 +353,15 @@ impl<'a> Renderer<'a> {
     /// The overrides that the shader declares.
     pub fn overrides(&self) -> &[OverrideInfo] {
         &self.overrides
+    }
+
+    /// What the shader compiler warns of, one sentence each, with its position.
+    pub fn warnings(&self) -> Vec<String> {
+        let text = |warning: &Diagnostic| match warning.location() {
+            Some(place) => format!("{place}: {}", warning.message),
+            None => warning.message.clone(),
+        };
+        self.warnings.iter().map(text).collect()
     }
 
     /// Wall time of composing and compiling, the driver's part included.

@@ -60,7 +60,7 @@ impl Scene {
         &self,
         kind: &str,
         objects: &[T],
-        check: impl Fn(&T) -> Check + Sync + Send,
+        check: impl Fn(&T) -> Check + Send + Sync,
     ) -> Result<(), SceneError> {
         let checks: Vec<Check> = objects.par_iter().map(check).collect();
         for (index, check) in checks.into_iter().enumerate() {

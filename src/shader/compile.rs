@@ -1,7 +1,5 @@
 //! Composed WGSL -> SPIR-V, with every check on the way.
 
-use std::borrow::Cow;
-
 use naga::back::pipeline_constants::{PipelineConstantError, process_overrides};
 use naga::back::spv;
 use naga::compact::{KeepUnused, compact};
@@ -67,8 +65,7 @@ pub struct Compiled {
 /// [`ShaderError::Backend`].
 pub fn compile(composed: &Composed, options: &CompileOptions) -> Result<Compiled, ShaderError> {
     guard::guarded(|| compile_unguarded(composed, options)).unwrap_or_else(|text| {
-        let message = format!("naga panicked: {text}");
-        let diagnostic = Reporter::new(composed).at(message, 0..0);
+        let diagnostic = Reporter::new(composed).at(text, 0..0);
         let note = "this is a bug of the shader compiler, not of the shader; \
                     the position is only the shader's beginning";
         Err(ShaderError::Backend(Box::new(diagnostic.note(note))))
@@ -154,8 +151,8 @@ fn override_error(error: &PipelineConstantError, report: Reporter<'_>) -> Shader
 }
 
 fn write(
-    module: &Cow<'_, Module>,
-    info: &Cow<'_, ModuleInfo>,
+    module: &Module,
+    info: &ModuleInfo,
     options: &CompileOptions<'_>,
     report: Reporter<'_>,
 ) -> Result<Vec<u32>, ShaderError> {

@@ -76,7 +76,7 @@ impl<'a> Reporter<'a> {
     /// If `byte` begins a file's first text, or its first behind an include: the end of the text
     /// before it, which is another file's and may be what is wrong; and whether that looks finished.
     fn end_of_previous_file(&self, byte: usize) -> Option<(FileSpan, bool)> {
-        let before = self.text().get(..byte)?;
+        let before = self.text().get(..byte)?.trim_end_matches('@');
         let mut lines = before.split_inclusive('\n').rev();
         let mut end = before.len();
         let line = lines.find(|line| {
@@ -96,14 +96,16 @@ impl<'a> Reporter<'a> {
         (span.file != self.place(byte..byte).file).then_some((span, finished))
     }
 
-    /// The narrowest span is the place to look at; naga lists the enclosing function first.
+    /// The place to look at is the first that naga says something about, else the narrowest: it
+    /// lists the enclosing function first, and a call's arguments with the call.
     pub(super) fn span_error<E: Error>(&self, error: &WithSpan<E>) -> Diagnostic {
         let (message, notes) = flatten(error.as_inner());
         let mut diagnostic = self.plain(Severity::Error, message);
         let mut spans: Vec<_> = error.spans().collect();
-        spans.sort_by_key(|(span, _)| span.to_range().map_or(usize::MAX, |r| r.len()));
+        let width = |span: &Span| span.to_range().map_or(usize::MAX, |r| r.len());
+        spans.sort_by_key(|(span, label)| (label.starts_with("naga::"), width(span)));
         for (span, label) in spans {
-            if let Some(range) = defined(*span) {
+            if let Some(range) = span.to_range() {
                 diagnostic = diagnostic.label(self.place(range), readable_label(label));
             }
         }
@@ -142,16 +144,12 @@ impl<'a> Reporter<'a> {
     }
 }
 
-fn defined(span: Span) -> Option<Range<usize>> {
-    span.to_range()
-}
-
 /// "what is invalid: why", and what stands between the two.
 fn flatten(error: &dyn Error) -> (String, Vec<String>) {
-    let mut chain = vec![error.to_string()];
+    let mut chain = vec![wgsl_types(&error.to_string())];
     let mut next = error.source();
     while let Some(source) = next {
-        chain.push(source.to_string());
+        chain.push(wgsl_types(&source.to_string()));
         next = source.source();
     }
     chain.dedup();
@@ -160,6 +158,28 @@ fn flatten(error: &dyn Error) -> (String, Vec<String>) {
         Some(last) => (format!("{}: {last}", without_handle(&first)), chain),
         None => (without_handle(&first), chain),
     }
+}
+
+/// Writes the types in a message of naga's as WGSL has them.
+fn wgsl_types(message: &str) -> String {
+    let kinds = [
+        ("Float", "f32"),
+        ("Uint", "u32"),
+        ("Sint", "i32"),
+        ("Bool", "bool"),
+    ];
+    let mut message = message.to_owned();
+    for (kind, name) in kinds {
+        let width = if kind == "Bool" { 1 } else { 4 };
+        let scalar = format!("Scalar {{ kind: {kind}, width: {width} }}");
+        for (size, count) in [("Bi", 2), ("Tri", 3), ("Quad", 4)] {
+            let vector = format!("Vector {{ size: {size}, scalar: {scalar} }}");
+            message = message.replace(&vector, &format!("vec{count}<{name}>"));
+        }
+        message = message.replace(&format!("Scalar({scalar})"), name);
+        message = message.replace(&scalar, name);
+    }
+    message
 }
 
 /// Drops naga's arena index from the thing that an error is about: "Function [3] 'f' is invalid".

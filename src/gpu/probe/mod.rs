@@ -27,6 +27,7 @@ pub struct Probe {
     /// Whether all loops that an invocation runs in a dispatch draw on one such limit.
     pub limit_spans_loops: bool,
     /// Whether the invocations of a SIMD group draw on one such limit, so that a trip of one counts for all.
+    /// On lavapipe 22.3.6 each SIMD group of each workgroup has a budget of its own.
     pub limit_spans_lanes: bool,
     /// Whether `fma(a, b, c)` rounds once.
     pub fused_fma: bool,

@@ -198,27 +198,36 @@ fn colors(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Result<
         primitive.warn(
             "its COLOR_0 has integers that are not marked as normalised; they are taken to be",
         );
-        let largest = match accessor.component.size() {
-            1 => 255.0,
-            2 => 65535.0,
-            _ => u32::MAX as f32,
-        };
-        for color in &mut mesh.colors {
-            *color /= largest;
-        }
+        normalize(&mut mesh.colors, accessor.component);
     }
     if accessor.shape == Shape::Vec3 {
         for color in &mut mesh.colors {
             color.w = 1.0;
         }
     }
-    let broken = replace(&mut mesh.colors, |color| color.is_finite(), Vec4::ZERO);
+    clamp_colors(primitive, &mut mesh.colors);
+    Ok(())
+}
+
+/// Divide integers by the largest of their type.
+fn normalize(colors: &mut [Vec4], component: Component) {
+    let largest = match component.size() {
+        1 => 255.0,
+        2 => 65535.0,
+        _ => u32::MAX as f32,
+    };
+    for color in colors {
+        *color /= largest;
+    }
+}
+
+fn clamp_colors(primitive: &mut Primitive, colors: &mut [Vec4]) {
+    let broken = replace(colors, |color| color.is_finite(), Vec4::ZERO);
     let in_range = |color: &Vec4| color.cmpge(Vec4::ZERO).all() && color.cmple(Vec4::ONE).all();
-    if broken > 0 || !mesh.colors.iter().all(in_range) {
+    if broken > 0 || !colors.iter().all(in_range) {
         primitive.warn("its COLOR_0 has values outside [0, 1]; they are clamped");
-        for color in &mut mesh.colors {
+        for color in colors {
             *color = color.clamp(Vec4::ZERO, Vec4::ONE);
         }
     }
-    Ok(())
 }

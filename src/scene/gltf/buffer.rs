@@ -16,6 +16,7 @@ pub(super) struct Data<'a> {
     buffers: Vec<Buffer<'a>>,
     views: Vec<View>,
     budget: AtomicU64,
+    pixels: AtomicU64,
     bytes: u64,
 }
 
@@ -56,6 +57,8 @@ const BASE_BUDGET: u64 = 1 << 30;
 /// How many times the bytes read decoded attributes may take: many primitives may share one
 /// accessor, but a small file must not ask for all memory.
 const EXPANSION: u64 = 64;
+/// Pixels that all images together may have beyond [`EXPANSION`] times the bytes read.
+const BASE_PIXELS: u64 = 1 << 30;
 /// Elements that an accessor without data may have in a small file.
 const SMALLEST_ZERO_LIMIT: u64 = 1 << 16;
 
@@ -79,6 +82,7 @@ impl<'a> Data<'a> {
             file: root.file().to_owned(),
             views,
             budget: AtomicU64::new(BASE_BUDGET + EXPANSION * files.total_bytes()),
+            pixels: AtomicU64::new(BASE_PIXELS + EXPANSION * files.total_bytes()),
             bytes: files.total_bytes(),
             buffers,
         })
@@ -117,11 +121,20 @@ impl<'a> Data<'a> {
 
     /// Take `bytes` from what decoded attributes may use; false if nothing is left.
     pub fn charge(&self, bytes: u64) -> bool {
-        let take = |left: u64| left.checked_sub(bytes);
-        self.budget
-            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
-            .is_ok()
+        take(&self.budget, bytes)
     }
+
+    /// Take `pixels` from what images may use; false if nothing is left.
+    pub fn charge_pixels(&self, pixels: u64) -> bool {
+        take(&self.pixels, pixels)
+    }
+}
+
+fn take(budget: &AtomicU64, amount: u64) -> bool {
+    let rest = |left: u64| left.checked_sub(amount);
+    budget
+        .fetch_update(Ordering::Relaxed, Ordering::Relaxed, rest)
+        .is_ok()
 }
 
 fn load_buffer<'a>(

@@ -104,15 +104,23 @@ impl Accessor<'_> {
         Ok(elements)
     }
 
+    /// Refuse an accessor that promises more zeros than a file of this size may ask for.
+    pub fn check_zeros(&self, data: &Data) -> Result<(), LoadError> {
+        if self.block.is_some() || self.count as u64 <= data.zero_limit() {
+            return Ok(());
+        }
+        Err(self.item.fault(format!(
+            "it promises {} elements, but refers to no buffer view that holds them",
+            self.count
+        )))
+    }
+
     /// Check that the result may be allocated.
     fn claim<T, const N: usize>(&self, data: &Data, count: usize) -> Result<(), LoadError> {
-        if self.block.is_none() && count as u64 > data.zero_limit() {
-            return Err(self.item.fault(format!(
-                "it promises {count} elements, but refers to no buffer view that holds them"
-            )));
-        }
-        let bytes = (count as u64).saturating_mul(size_of::<[T; N]>() as u64);
-        if data.charge(bytes) {
+        self.check_zeros(data)?;
+        let replaced = self.sparse.as_ref().map_or(0, |sparse| sparse.count);
+        let elements = count as u64 + replaced as u64;
+        if data.charge(elements.saturating_mul(size_of::<[T; N]>() as u64)) {
             return Ok(());
         }
         Err(self.item.fault(

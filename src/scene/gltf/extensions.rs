@@ -70,17 +70,7 @@ pub(super) fn check(
         .collect();
     for &name in &all {
         let listed = used.contains(name) || required.contains(name);
-        if !is_supported(name) {
-            warnings.push(format!(
-                "the extension {} is not supported: the picture does not show {}",
-                shorten(name),
-                effect(name)
-            ));
-        } else if !listed {
-            warnings.push(format!(
-                "{name} is used but not listed in `extensionsUsed`; it is honoured"
-            ));
-        }
+        warnings.extend(warning(name, listed));
     }
     let uses = all.into_iter().map(|name| ExtensionUse {
         name: name.to_owned(),
@@ -88,6 +78,17 @@ pub(super) fn check(
         supported: is_supported(name),
     });
     Ok(uses.collect())
+}
+
+fn warning(name: &str, listed: bool) -> Option<String> {
+    if !is_supported(name) {
+        return Some(format!(
+            "the extension {} is not supported: the picture does not show {}",
+            shorten(name),
+            effect(name)
+        ));
+    }
+    (!listed).then(|| format!("{name} is used but not listed in `extensionsUsed`; it is honoured"))
 }
 
 fn is_supported(name: &str) -> bool {

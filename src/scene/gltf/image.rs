@@ -79,8 +79,8 @@ impl Encoded<'_> {
     }
 
     /// The pixels.
-    pub fn decode(&self) -> Result<Image, LoadError> {
-        let pixels = self.decode_pixels();
+    pub fn decode(&self, data: &Data) -> Result<Image, LoadError> {
+        let pixels = self.decode_pixels(data);
         let texels = pixels
             .map(into_texels)
             .map_err(|problem| LoadError::Image {
@@ -97,7 +97,7 @@ impl Encoded<'_> {
         })
     }
 
-    fn decode_pixels(&self) -> Result<DynamicImage, String> {
+    fn decode_pixels(&self, data: &Data) -> Result<DynamicImage, String> {
         /// Most pixels that a byte of PNG may stand for: deflate packs up to 1032 to 1, and a
         /// pixel may be one bit.
         const PNG_PIXELS_PER_BYTE: u64 = 8 * 1032;
@@ -107,11 +107,11 @@ impl Encoded<'_> {
         let cursor = Cursor::new(bytes);
         if bytes.starts_with(b"\x89PNG") {
             let decoder = PngDecoder::new(cursor).map_err(|error| damaged("PNG", &error))?;
-            return self.run("PNG", decoder, PNG_PIXELS_PER_BYTE);
+            return self.run("PNG", decoder, PNG_PIXELS_PER_BYTE, data);
         }
         if bytes.starts_with(b"\xFF\xD8") {
             let decoder = JpegDecoder::new(cursor).map_err(|error| damaged("JPEG", &error))?;
-            return self.run("JPEG", decoder, JPEG_PIXELS_PER_BYTE);
+            return self.run("JPEG", decoder, JPEG_PIXELS_PER_BYTE, data);
         }
         Err(format!(
             "expected a PNG or JPEG image, found {}; convert it",
@@ -125,6 +125,7 @@ impl Encoded<'_> {
         format: &str,
         mut decoder: impl ImageDecoder,
         pixels_per_byte: u64,
+        data: &Data,
     ) -> Result<DynamicImage, String> {
         let (width, height) = decoder.dimensions();
         let pixels = u64::from(width) * u64::from(height);
@@ -137,6 +138,11 @@ impl Encoded<'_> {
         if pixels > length.saturating_mul(pixels_per_byte) {
             return Err(format!(
                 "its header promises {width} × {height} pixels, more than its {length} bytes can hold; the {format} is damaged"
+            ));
+        }
+        if !data.charge_pixels(pixels) {
+            return Err(format!(
+                "its {width} × {height} pixels are too many together with the other images"
             ));
         }
         let mut limits = Limits::default();

@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use rayon::prelude::*;
 use serde_json::Value;
 
 use super::buffer::Data;
@@ -12,10 +11,10 @@ use super::files::Files;
 use super::json::Item;
 use super::material::{self, RawMaterial};
 use super::node::{Nodes, Placed};
-use super::primitive::{self, Loaded, Source};
+use super::primitive::Source;
 use super::texture::{self, Textures};
-use super::{LoadOptions, accessor, camera, extensions, framing, light, pose};
-use crate::scene::{Instance, Material, Scene, TextureSlot};
+use super::{LoadOptions, accessor, camera, extensions, framing, light, meshes, pose};
+use crate::scene::{Material, Scene, TextureSlot};
 
 /// Load the chosen scene of a parsed file.
 pub(super) fn load(
@@ -39,27 +38,7 @@ pub(super) fn load(
     place_cameras_and_lights(&root, &nodes, &placed, &mut scene)?;
 
     let mut files = Files::new(bytes);
-    let data = Data::load(&root, &mut files, binary)?;
-    let accessors = accessor::read_all(&root, &data)?;
-    let mut materials = material::read_all(&root, &mut scene.warnings)?;
-    materials.push(default_material());
-    let source = Source {
-        data: &data,
-        accessors: &accessors,
-        materials: &materials,
-    };
-    load_meshes(&root, &nodes, &placed, source, &mut scene)?;
-    let used: BTreeSet<usize> = scene.meshes.iter().map(|mesh| mesh.material).collect();
-    let used_materials = used.iter().map(|&index| &materials[index]);
-    let textures = texture::load(
-        &root,
-        &data,
-        &mut files,
-        used_materials,
-        &mut scene.warnings,
-    )?;
-    fill_materials(&mut scene, materials, &used, textures);
-
+    load_content(&root, &nodes, &placed, &mut files, binary, &mut scene)?;
     scene.hash = files.hash();
     if scene.cameras.is_empty() {
         scene.cameras.push(framing::camera(&scene));
@@ -69,6 +48,34 @@ pub(super) fn load(
     }
     shorten_warnings(&mut scene.warnings);
     Ok(scene)
+}
+
+/// Load what the placed nodes show: meshes, materials, textures.
+fn load_content(
+    root: &Item,
+    nodes: &Nodes,
+    placed: &[Placed],
+    files: &mut Files,
+    binary: Option<&[u8]>,
+    scene: &mut Scene,
+) -> Result<(), LoadError> {
+    let data = Data::load(root, files, binary)?;
+    let accessors = accessor::read_all(root, &data)?;
+    let mut materials = material::read_all(root, &mut scene.warnings)?;
+    materials.push(default_material());
+    let source = Source {
+        data: &data,
+        accessors: &accessors,
+        materials: &materials,
+    };
+    meshes::load(root, nodes, placed, source, scene)?;
+    let used: BTreeSet<usize> = scene.meshes.iter().map(|mesh| mesh.material).collect();
+    let used_materials = used.iter().map(|&index| &materials[index]);
+    let textures = texture::load(root, &data, files, used_materials, &mut scene.warnings)?;
+    fill_materials(scene, materials, &used, &textures);
+    scene.textures = textures.textures;
+    scene.images = textures.images;
+    Ok(())
 }
 
 /// glTF 2.x, and nothing newer than 2.0 required.
@@ -149,99 +156,38 @@ fn default_material() -> RawMaterial {
     }
 }
 
-/// Load the meshes that the placed nodes show, and place them.
-fn load_meshes(
-    root: &Item,
-    nodes: &Nodes,
-    placed: &[Placed],
-    source: Source,
-    scene: &mut Scene,
-) -> Result<(), LoadError> {
-    let items = root.items("meshes", "mesh")?;
-    let mut shown = vec![None; placed.len()];
-    for (shown, placed) in shown.iter_mut().zip(placed) {
-        *shown = nodes.item(placed.node).index("mesh", "mesh", items.len())?;
-    }
-    let wanted: BTreeSet<usize> = shown.iter().flatten().copied().collect();
-    let mut primitives = Vec::new();
-    for &mesh in &wanted {
-        pose::warn_of_morphs(&items[mesh], &mut scene.warnings)?;
-        for primitive in items[mesh].items("primitives", "primitive")? {
-            primitives.push((mesh, primitive));
-        }
-    }
-    // Collect first: the error of the first primitive wins, whatever thread finds it.
-    let loaded: Vec<Result<Loaded, LoadError>> = primitives
-        .par_iter()
-        .map(|(mesh, primitive)| primitive::load(primitive, items[*mesh].name(), source))
-        .collect();
-    let mut meshes_of = vec![Vec::new(); items.len()];
-    for ((mesh, _), loaded) in primitives.iter().zip(loaded) {
-        let loaded = loaded?;
-        scene.warnings.extend(loaded.warnings);
-        if let Some(triangles) = loaded.mesh {
-            meshes_of[*mesh].push(scene.meshes.len());
-            scene.meshes.push(triangles);
-        }
-    }
-    let skins = pose::Skins::read(root, nodes, placed, source)?;
-    for (placed, mesh) in placed.iter().zip(shown) {
-        let Some(mesh) = mesh else { continue };
-        let name = nodes.item(placed.node).name();
-        let to_world = skins.rest_pose(nodes.item(placed.node), placed, &mut scene.warnings)?;
-        scene
-            .instances
-            .extend(meshes_of[mesh].iter().map(|&mesh| Instance {
-                mesh,
-                to_world,
-                name: name.to_owned(),
-            }));
-    }
-    Ok(())
-}
-
 /// Put the scene's texture indices into the materials that are used; the others get no textures.
 fn fill_materials(
     scene: &mut Scene,
     raw: Vec<RawMaterial>,
     used: &BTreeSet<usize>,
-    textures: Textures,
+    textures: &Textures,
 ) {
     let default = raw.len() - 1;
     for (index, raw) in raw.into_iter().enumerate() {
-        if index == default && !used.contains(&index) {
+        let is_used = used.contains(&index);
+        if index == default && !is_used {
             break;
         }
-        let [
-            base_color,
-            metallic_roughness,
-            normal,
-            emissive,
-            specular,
-            specular_color,
-        ] = raw.slots.map(|slot| {
-            let slot = slot?;
-            let &texture = textures.index.get(&slot.texture)?;
+        let slots = raw.slots.map(|slot| {
+            let slot = slot.filter(|_| is_used)?;
             Some(TextureSlot {
-                texture,
+                texture: *textures.index.get(&slot.texture)?,
                 tex_coord: slot.tex_coord,
                 matrix: slot.matrix,
                 offset: slot.offset,
             })
-            .filter(|_| used.contains(&index))
         });
         scene.materials.push(Material {
-            base_color_texture: base_color,
-            metallic_roughness_texture: metallic_roughness,
-            normal_texture: normal,
-            emissive_texture: emissive,
-            specular_texture: specular,
-            specular_color_texture: specular_color,
+            base_color_texture: slots[material::BASE_COLOR],
+            metallic_roughness_texture: slots[material::METALLIC_ROUGHNESS],
+            normal_texture: slots[material::NORMAL],
+            emissive_texture: slots[material::EMISSIVE],
+            specular_texture: slots[material::SPECULAR],
+            specular_color_texture: slots[material::SPECULAR_COLOR],
             ..raw.material
         });
     }
-    scene.textures = textures.textures;
-    scene.images = textures.images;
 }
 
 /// Each sentence once, and not more than anyone would read.

@@ -77,7 +77,7 @@ impl Reader<'_, '_> {
         self.normal(&mut raw)?;
         self.emission(&mut raw)?;
         self.specular(&mut raw)?;
-        drop_unread_slots(&mut raw);
+        drop_unread(&mut raw);
         texture_info::choose_sets(self.item, &mut raw)?;
         Ok(raw)
     }
@@ -191,14 +191,17 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Forget textures that a zero factor or the lack of lighting keeps from being seen.
-fn drop_unread_slots(raw: &mut RawMaterial) {
+/// Forget what a zero factor or the lack of lighting keeps from being seen.
+fn drop_unread(raw: &mut RawMaterial) {
+    if raw.material.unlit {
+        raw.material.emissive = Vec3::ZERO;
+    }
     let material = &raw.material;
     let unread = [
         false,
         material.unlit,
         material.unlit,
-        material.unlit || material.emissive == Vec3::ZERO,
+        material.emissive == Vec3::ZERO,
         material.unlit || material.specular == 0.0,
         material.unlit || material.specular == 0.0 || material.specular_color == Vec3::ZERO,
     ];

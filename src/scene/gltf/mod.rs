@@ -18,9 +18,11 @@ mod json;
 mod light;
 mod loader;
 mod material;
+mod meshes;
 mod node;
 mod pose;
 mod primitive;
+mod tangent_faces;
 mod tangents;
 mod texture;
 mod texture_info;
@@ -50,8 +52,17 @@ pub struct LoadOptions {
 /// [`LoadError`]: one sentence that names the file and the object in it.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, LoadError> {
     let bytes = files::read_scene(path)?;
-    let container = container::split(path, &bytes)?;
+    load_slice(path, &bytes, options)
+}
+
+/// Load a scene from `bytes` as if they were the content of the file `path`, which gives the
+/// folder of external files and the name in messages.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_slice(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene, LoadError> {
+    let container = container::split(path, bytes)?;
     let json = container::parse(path, &bytes[container.json])?;
     let binary = container.binary.map(|range| &bytes[range]);
-    loader::load(path, &bytes, &json, binary, options)
+    loader::load(path, bytes, &json, binary, options)
 }

@@ -75,6 +75,8 @@ impl<'a> Primitive<'a> {
             return Ok(None);
         };
         positions.expect_shape("POSITION", &[Shape::Vec3])?;
+        positions.check_zeros(self.source.data)?;
+        self.refuse_draco(positions)?;
         self.check_counts(positions.count)?;
         let mut indices = self.triangles(topology, positions.count)?;
         if indices.is_empty() {
@@ -113,6 +115,17 @@ impl<'a> Primitive<'a> {
     pub fn warn(&mut self, sentence: &str) {
         self.warnings
             .push(format!("{}: {sentence}", self.item.label()));
+    }
+
+    /// Without the uncompressed copy that glTF allows beside Draco's, all vertices would be zero.
+    fn refuse_draco(&self, positions: &Accessor) -> Result<(), LoadError> {
+        let compressed = self.item.extension("KHR_draco_mesh_compression")?;
+        match compressed.filter(|_| positions.block.is_none()) {
+            None => Ok(()),
+            Some(item) => Err(item.fault(
+                "its vertices are compressed, which is not supported; export the scene without it",
+            )),
+        }
     }
 
     /// How corners make triangles; none for points and lines.

@@ -3,6 +3,7 @@
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec2, Vec3, Vec4};
 
+use super::tangent_faces;
 use crate::scene::Mesh;
 
 /// Fill `mesh.tangents` from the texture coordinate set `set`, splitting vertices where the
@@ -11,7 +12,7 @@ pub(super) fn generate(mesh: &mut Mesh, set: usize) {
     let mut corners = Corners {
         position_scale: power_of_two_scale(mesh.positions.iter().map(|p| p.abs().max_element())),
         uv_scale: power_of_two_scale(mesh.tex_coords[set].iter().map(|uv| uv.abs().max_element())),
-        faces: finite_triangles(mesh),
+        faces: tangent_faces::choose(mesh, set),
         flat_normals: flat_normals(mesh),
         tangents: Vec::new(),
         set,
@@ -22,11 +23,11 @@ pub(super) fn generate(mesh: &mut Mesh, set: usize) {
     let _ = generate_tangents(&mut corners);
     let mut tangents = corners.tangents;
     let flat_normals = corners.flat_normals;
-    replace_missing(mesh, &mut tangents, &flat_normals);
+    replace_missing(mesh, set, &mut tangents, &flat_normals);
     split_vertices(mesh, &tangents);
 }
 
-/// A mesh as MikkTSpace sees it: corners of finite triangles.
+/// A mesh as MikkTSpace sees it: corners of the triangles that it can handle.
 struct Corners<'a> {
     mesh: &'a Mesh,
     set: usize,
@@ -92,20 +93,6 @@ fn power_of_two_scale(sizes: impl Iterator<Item = f32>) -> f32 {
     (-exponent).exp2() as f32
 }
 
-/// Triangles whose vertices are all finite.
-fn finite_triangles(mesh: &Mesh) -> Vec<u32> {
-    let finite = |triangle: &[u32; 3]| {
-        triangle
-            .iter()
-            .all(|&vertex| mesh.positions[vertex as usize].is_finite())
-    };
-    let triangles = mesh.indices.iter().enumerate();
-    triangles
-        .filter(|(_, triangle)| finite(triangle))
-        .map(|(index, _)| index as u32)
-        .collect()
-}
-
 /// One normal a triangle, if the mesh has none itself.
 fn flat_normals(mesh: &Mesh) -> Vec<Vec3> {
     if !mesh.normals.is_empty() {
@@ -125,19 +112,20 @@ pub(super) fn flat_normal(triangle: [Vec3; 3]) -> Vec3 {
     unit.map_or(Vec3::Z, |normal| normal.as_vec3())
 }
 
-/// Where MikkTSpace gave nothing usable, any direction in the surface.
-fn replace_missing(mesh: &Mesh, tangents: &mut [Vec4], flat_normals: &[Vec3]) {
+/// Where MikkTSpace gave nothing usable, the triangle's own tangent, or else any.
+fn replace_missing(mesh: &Mesh, set: usize, tangents: &mut [Vec4], flat_normals: &[Vec3]) {
     for (corner, tangent) in tangents.iter_mut().enumerate() {
-        let usable = tangent.truncate().try_normalize();
-        let Some(unit) = usable else {
-            let normal = match flat_normals.get(corner / 3) {
-                Some(normal) => *normal,
-                None => mesh.normals[mesh.indices[corner / 3][corner % 3] as usize],
-            };
-            *tangent = any_tangent(normal);
+        if let Some(unit) = tangent.truncate().try_normalize() {
+            *tangent = unit.extend(tangent.w);
             continue;
+        }
+        let triangle = mesh.indices[corner / 3];
+        let normal = match flat_normals.get(corner / 3) {
+            Some(normal) => *normal,
+            None => mesh.normals[triangle[corner % 3] as usize],
         };
-        *tangent = unit.extend(tangent.w);
+        let own = tangent_faces::own_tangent(mesh, set, triangle, normal);
+        *tangent = own.unwrap_or_else(|| any_tangent(normal));
     }
 }
 

@@ -57,12 +57,16 @@ pub(super) fn load<'m>(
             sampler: sampler.map_or(DEFAULT_SAMPLER, |sampler| samplers[sampler]),
         });
     }
-    result.images = decode_once(encoded, &mut result.textures)?;
+    result.images = decode_once(encoded, data, &mut result.textures)?;
     Ok(result)
 }
 
 /// Decode each distinct image once, in parallel, and let the textures share the results.
-fn decode_once(encoded: Vec<Encoded>, textures: &mut [Texture]) -> Result<Vec<Image>, LoadError> {
+fn decode_once(
+    encoded: Vec<Encoded>,
+    data: &Data,
+    textures: &mut [Texture],
+) -> Result<Vec<Image>, LoadError> {
     let mut first_of = HashMap::new();
     let mut distinct: Vec<&Encoded> = Vec::new();
     let mut index = Vec::with_capacity(encoded.len());
@@ -77,8 +81,10 @@ fn decode_once(encoded: Vec<Encoded>, textures: &mut [Texture]) -> Result<Vec<Im
         texture.image = index[texture.image];
     }
     // Collect first: the error of the first image wins, whatever thread finds it.
-    let images: Vec<Result<Image, LoadError>> =
-        distinct.into_par_iter().map(Encoded::decode).collect();
+    let images: Vec<Result<Image, LoadError>> = distinct
+        .into_par_iter()
+        .map(|image| image.decode(data))
+        .collect();
     images.into_iter().collect()
 }
 

@@ -22,8 +22,11 @@ fn decorated(kernel: &Compiled) -> BTreeSet<u32> {
     ours.map(|i| i.words[1]).collect()
 }
 
+/// Opcodes and result ids.
+type Operations = Vec<(u16, u32)>;
+
 /// The opcodes of 127..=148 inside and outside functions whose name begins with `exact_`.
-fn arithmetic(kernel: &Compiled) -> (Vec<(u16, u32)>, Vec<(u16, u32)>) {
+fn arithmetic(kernel: &Compiled) -> (Operations, Operations) {
     let names = instructions(&kernel.spirv).filter(|i| i.opcode == op::NAME);
     let exact: BTreeSet<u32> = names
         .filter(|i| i.string(2).starts_with("exact_"))

@@ -108,3 +108,28 @@ fn odd_texts() {
         survives(text, &format!("{HEAD}}}\n{text}"));
     }
 }
+
+/// Far longer than any shader, for a person in doubt: `ETENDUE_CHAIN=N cargo test longest -- --ignored`.
+#[test]
+#[ignore = "slow"]
+fn longest_chains() {
+    let n = std::env::var("ETENDUE_CHAIN")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(60_000);
+    let body = |text: String| format!("{HEAD}{text}\n}}");
+    survives("sums", &body(format!("d[0] = d[1]{};", "+d[1]".repeat(n))));
+    eprintln!("sums");
+    survives("members", &body(format!("d[0] = d[0]{};", ".x".repeat(n))));
+    eprintln!("members");
+    survives(
+        "else ifs",
+        &body(format!("if(true){{}}{}", "else if(true){}".repeat(n))),
+    );
+    eprintln!("else ifs");
+    survives(
+        "ors",
+        &body(format!("let a = d[0] > 1.0{};", "||true".repeat(n))),
+    );
+    eprintln!("ors");
+}

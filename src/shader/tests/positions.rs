@@ -78,6 +78,16 @@ fn type_errors() {
 }
 
 #[test]
+fn types_are_written_as_in_wgsl_and_calls_are_the_place() {
+    let sum = "fn f(x: f32) -> f32 {\n  return x + 1u;\n}";
+    expect(sum, "lib/f.wgsl:2:10", "(of type u32)");
+    let vector = "fn f(x: f32) -> f32 {\n  let v = vec3f(x) + vec3u(1);\n  return v.x;\n}";
+    expect(vector, "lib/f.wgsl:2:11", "vec3<u32>");
+    let call = "fn g(a: f32, b: i32) {}\nfn f(x: f32) -> f32 {\n  g(x, x);\n  return x;\n}";
+    expect(call, "lib/f.wgsl:3:3", "Argument 1");
+}
+
+#[test]
 fn tabs_and_other_alphabets_before_the_column() {
     expect(
         "fn f(x: f32) -> f32 {\n\t\treturn y;\n}",
@@ -188,7 +198,7 @@ fn an_unfinished_file_is_blamed_before_the_one_that_goes_on() {
     expect("const a = 1", "lib/f.wgsl:1:11", "main.wgsl:2:1");
     expect(
         "fn f(x: f32) -> f32 { return x;",
-        "main.wgsl:2:1",
+        "main.wgsl:2:2",
         "lib/f.wgsl:1:31",
     );
 }

@@ -1,0 +1,150 @@
+//! The kernels that `etendue shaders check` and the tests compile, without any device or scene.
+
+use super::error::RenderError;
+use super::paged::paged_wgsl;
+use super::program::{self, Constant, ENTRY_FILE, feature_constants, features_wgsl};
+use super::settings::Settings;
+use crate::scene::Features;
+use crate::shader::{Check, CompileOptions, ShaderLibrary, StructLayout, VirtualFiles};
+
+/// What a kernel is compiled for.
+#[derive(Debug, Clone)]
+pub struct Variant {
+    /// In words.
+    pub name: &'static str,
+    /// The generated constants.
+    pub constants: Vec<(&'static str, Constant)>,
+    /// Pages of each large array.
+    pub pages: usize,
+    /// Whether bounds are checked.
+    pub checked: bool,
+}
+
+/// The extremes: nothing and everything, each as it is rendered by default, and split over pages
+/// with bounds checks.
+pub fn variants() -> Vec<Variant> {
+    let variant = |name, on, pages, checked| Variant {
+        name,
+        constants: constants(on),
+        pages,
+        checked,
+    };
+    vec![
+        variant("no feature", false, 1, false),
+        variant("every feature", true, 1, false),
+        variant("no feature, paged, checked", false, 3, true),
+        variant("every feature, paged, checked", true, 3, true),
+    ]
+}
+
+/// All generated constants, as of a scene with nothing or with everything.
+pub fn constants(on: bool) -> Vec<(&'static str, Constant)> {
+    let mut constants = feature_constants(&Features::default());
+    for (_, value) in &mut constants {
+        *value = Constant::Bool(on);
+    }
+    constants.extend([
+        ("HAS_LIGHT_TRIANGLES", Constant::Bool(on)),
+        ("HAS_PUNCTUAL_LIGHTS", Constant::Bool(on)),
+        ("HAS_ENVIRONMENT", Constant::Bool(on)),
+        ("HAS_ENVIRONMENT_IMAGE", Constant::Bool(on)),
+        ("VERTEX_STRIDE", Constant::U32(if on { 15 } else { 0 })),
+        ("NORMAL_OFFSET", Constant::U32(0)),
+        ("TANGENT_OFFSET", Constant::U32(3)),
+        ("UV0_OFFSET", Constant::U32(7)),
+        ("UV1_OFFSET", Constant::U32(9)),
+        ("COLOR_OFFSET", Constant::U32(11)),
+        ("STACK_SIZE", Constant::U32(if on { 64 } else { 1 })),
+        ("COUNT_STEPS", Constant::Bool(on)),
+        ("COUNT_RAYS", Constant::Bool(on)),
+    ]);
+    constants
+}
+
+/// The generated files of a kernel.
+///
+/// # Errors
+/// [`RenderError::Unknown`].
+pub fn virtual_files(
+    library: &ShaderLibrary,
+    settings: &Settings,
+    constants: &[(&'static str, Constant)],
+    pages: usize,
+) -> Result<VirtualFiles, RenderError> {
+    let mut files = program::choice_files(library, settings)?;
+    files.insert("features.wgsl".into(), features_wgsl(constants));
+    files.insert("buffers.wgsl".into(), buffers_wgsl(pages));
+    Ok(files)
+}
+
+/// Large arrays of `pages` pages each.
+fn buffers_wgsl(pages: usize) -> String {
+    let arrays = [
+        ("nodes", "BvhNode", "load_node"),
+        ("triangles", "Triangle", "load_triangle"),
+        ("indices", "u32", "load_index"),
+        ("vertex_words", "f32", "load_vertex_word"),
+        ("texel_words", "u32", "load_texel_word"),
+        ("environment_texels", "vec4f", "load_environment_texel"),
+        ("environment_alias", "vec2u", "load_environment_alias"),
+    ];
+    let paged = |(i, (name, element, accessor)): (usize, (&str, &str, &str))| {
+        paged_wgsl(name, element, accessor, pages, 20, 16 + (i * pages) as u32)
+    };
+    arrays.into_iter().enumerate().map(paged).collect()
+}
+
+/// Every integrator with the default sampler and every sampler with the default integrator would
+/// miss what goes wrong between two: every integrator with every sampler, in every variant.
+///
+/// # Errors
+/// The library has no integrator or no sampler.
+pub fn checks<'a>(
+    library: &ShaderLibrary,
+    layouts: &'a [StructLayout],
+) -> Result<Vec<Check<'a>>, RenderError> {
+    let mut checks = Vec::new();
+    for integrator in names(library, "integrator")? {
+        for sampler in names(library, "sampler")? {
+            for variant in variants() {
+                checks.push(check(library, &integrator, &sampler, &variant, layouts)?);
+            }
+        }
+    }
+    Ok(checks)
+}
+
+fn names(library: &ShaderLibrary, kind: &'static str) -> Result<Vec<String>, RenderError> {
+    let names = library.names_in(kind);
+    match names.is_empty() {
+        true => Err(RenderError::Setting(format!(
+            "{} has no file {kind}/*.wgsl: is it a folder made by `etendue shaders export`?",
+            library.describe()
+        ))),
+        false => Ok(names),
+    }
+}
+
+fn check<'a>(
+    library: &ShaderLibrary,
+    integrator: &str,
+    sampler: &str,
+    variant: &Variant,
+    layouts: &'a [StructLayout],
+) -> Result<Check<'a>, RenderError> {
+    let settings = Settings {
+        integrator: integrator.into(),
+        sampler: sampler.into(),
+        ..Settings::default()
+    };
+    Ok(Check {
+        name: format!("{integrator}, {sampler}, {}", variant.name),
+        virtuals: virtual_files(library, &settings, &variant.constants, variant.pages)?,
+        entry: ENTRY_FILE.into(),
+        options: CompileOptions {
+            checked: variant.checked,
+            layouts,
+            ..CompileOptions::default()
+        },
+    })
+}

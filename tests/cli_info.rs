@@ -1,0 +1,91 @@
+//! `etendue info` and `etendue devices`.
+
+mod cli_support;
+
+use cli_support::{etendue, folder, path_in};
+
+#[test]
+fn info_shows_a_scene_as_text_and_as_json() {
+    let text = etendue(&["info", "scenes/foliage.gltf"])
+        .ends_with(0)
+        .stdout;
+    for part in [
+        "triangles",
+        "cameras",
+        "materials",
+        "textures",
+        "extensions",
+        "features of the shader",
+        "alpha_mask",
+        "supported",
+    ] {
+        assert!(text.contains(part), "no {part} in:\n{text}");
+    }
+    let json = etendue(&["info", "scenes/foliage.gltf", "--json"])
+        .ends_with(0)
+        .json();
+    for key in [
+        "cameras",
+        "lights",
+        "materials",
+        "textures",
+        "extensions",
+        "features",
+        "warnings",
+    ] {
+        assert!(json[key].is_array(), "{key}");
+    }
+    assert!(json["triangles"].as_u64() > Some(0));
+    assert!(json["textures"][0]["width"].as_u64() > Some(0));
+    assert!(json["features"][0]["reason"].is_string());
+}
+
+#[test]
+fn info_needs_no_device() {
+    let mut command = cli_support::command(&["info", "scenes/furnace.gltf"]);
+    // The loader then finds no driver.
+    let child = command.env("VK_ICD_FILENAMES", "/nonexistent.json").spawn();
+    cli_support::finish(child.expect("the program starts")).ends_with(0);
+}
+
+#[test]
+fn info_refuses_what_cannot_be_read() {
+    etendue(&["info", "no/such/scene.gltf"]).refused(&["no/such/scene.gltf"]);
+    etendue(&["info", "scenes/furnace.gltf", "--scene", "9"]).refused(&["no scene 9"]);
+}
+
+#[test]
+fn names_from_a_file_do_not_reach_the_terminal_raw() {
+    let folder = folder();
+    let scene = path_in(&folder, "a.gltf");
+    let text = r#"{"asset":{"version":"2.0"},"scenes":[{"name":"\u001b[31mred","nodes":[0]}],
+        "nodes":[{"name":"\u001b]0;title\u0007","camera":0}],"extensionsUsed":["\u001b[1m"],
+        "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}]}"#;
+    std::fs::write(&scene, text).expect("a file");
+    let run = etendue(&["info", &scene]).ends_with(0);
+    assert!(!run.stdout.contains('\u{1b}'), "{:?}", run.stdout);
+}
+
+#[test]
+fn devices_are_listed() {
+    let text = etendue(&["devices"]).ends_with(0).stdout;
+    assert!(text.starts_with("0: "), "{text}");
+    let json = etendue(&["devices", "--json"]).ends_with(0).json();
+    assert_eq!(json[0]["index"], 0);
+    assert!(json[0]["driver"].is_string());
+}
+
+#[test]
+fn without_a_driver_it_says_how_to_get_one() {
+    for arguments in [
+        &["devices"][..],
+        &["render", "scenes/furnace.gltf", "--json", "-"],
+    ] {
+        let mut command = cli_support::command(arguments);
+        let command = command
+            .env("VK_ICD_FILENAMES", "/nonexistent.json")
+            .env("VK_DRIVER_FILES", "/nonexistent.json");
+        let run = cli_support::finish(command.spawn().expect("the program starts")).ends_with(3);
+        assert!(run.stderr.contains("apt install"), "{}", run.stderr);
+    }
+}

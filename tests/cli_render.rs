@@ -1,0 +1,236 @@
+//! `etendue render`: pictures, layers, metadata and the report.
+
+mod cli_support;
+
+use std::path::Path;
+
+use cli_support::{folder, path_in, render, render_scene};
+use etendue::image::exr;
+use serde_json::Value;
+
+#[test]
+fn pictures_have_the_size_layers_and_metadata_that_were_asked_for() {
+    let folder = folder();
+    let (exr_path, png_path) = (path_in(&folder, "it's.exr"), path_in(&folder, "a.png"));
+    let run = render(&[
+        "-o",
+        &exr_path,
+        "-o",
+        &png_path,
+        "--aov",
+        "albedo,normals,depth,variance",
+        "--seed",
+        "7",
+        "--set",
+        "ROULETTE_DEPTH=3",
+        "--set",
+        "AO_DISTANCE=2",
+        "--aov",
+        "ao",
+        "--env",
+        "0.5,0.25,0.125",
+        "--env-rotation",
+        "-90",
+        "--env-scale",
+        "2",
+    ])
+    .ends_with(0);
+    assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("", ""));
+
+    let (picture, metadata) = exr::read(Path::new(&exr_path)).expect("a readable EXR");
+    assert_eq!((picture.width, picture.height), (16, 12));
+    let layers: Vec<_> = picture.layers.iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(layers, ["", "albedo", "ao", "depth", "normals", "variance"]);
+    for layer in &picture.layers {
+        let [r, _, _] = layer.rgb().expect("colour");
+        assert!(r.iter().any(|x| *x != 0.0), "layer {} is black", layer.name);
+    }
+    let entry = |key: &str| {
+        metadata
+            .0
+            .get(&format!("etendue.{key}"))
+            .map_or("", String::as_str)
+    };
+    assert_eq!(entry("spp"), "4");
+    assert_eq!(entry("seed"), "7");
+    assert_eq!(entry("size"), "16x12");
+    assert_eq!(entry("integrator"), "path");
+    assert_eq!(entry("sampler"), "sobol");
+    assert_eq!(entry("max_depth"), "8");
+    assert_eq!(entry("version"), env!("CARGO_PKG_VERSION"));
+    assert_eq!(entry("overrides"), "ROULETTE_DEPTH=3 AO_DISTANCE=2");
+    assert_eq!(entry("environment"), "0.5,0.25,0.125");
+    assert_eq!(entry("environment_rotation"), "-90");
+    assert_eq!(entry("environment_scale"), "2");
+    assert_eq!(entry("scene_hash").len(), 64);
+    for key in ["device", "driver", "camera", "shader_hash"] {
+        assert_ne!(entry(key), "", "{key}");
+    }
+    assert!(
+        entry("command").contains(r"it'\''s.exr"),
+        "{}",
+        entry("command")
+    );
+
+    let png = image::open(&png_path).expect("a readable PNG");
+    assert_eq!((png.width(), png.height()), (16, 12));
+}
+
+#[test]
+fn the_report_has_every_field() {
+    let folder = folder();
+    let output = path_in(&folder, "a.exr");
+    let run = render(&["-o", &output, "--json", "-", "--stats"]).ends_with(0);
+    let report = run.json();
+    for key in ["load", "accel", "compile", "render", "write", "total"] {
+        assert!(
+            report["seconds"][key].as_f64() >= Some(0.0),
+            "seconds.{key}"
+        );
+    }
+    for key in [
+        "scene",
+        "device",
+        "driver",
+        "version",
+        "integrator",
+        "sampler",
+        "scene_hash",
+    ] {
+        assert!(report[key].is_string(), "{key}");
+    }
+    for key in [
+        "paths_per_second",
+        "rays_per_second",
+        "triangles",
+        "device_bytes",
+    ] {
+        assert!(report[key].as_f64() > Some(0.0), "{key}");
+    }
+    assert_eq!(report["width"], 16);
+    assert_eq!(report["height"], 12);
+    assert_eq!(report["spp"].as_u64(), Some(4));
+    assert_eq!(report["seed"], 0);
+    assert_eq!(report["max_depth"], 8);
+    assert_eq!(report["non_finite_samples"], 0);
+    assert_eq!(report["interrupted"], false);
+    assert_eq!(report["warnings"], Value::Array(Vec::new()));
+    assert_eq!(report["outputs"][0], output.as_str());
+    assert!(report["rays"]["closest"].as_u64() >= Some(16 * 12 * 4));
+    assert!(report["rays"]["any"].as_u64() > Some(0));
+    assert!(report["mean_radiance"][2].as_f64() > Some(0.0));
+    assert!(report["relative_error"].as_f64() > Some(0.0));
+}
+
+#[test]
+fn a_report_alone_goes_to_a_file_and_leaves_out_what_was_not_counted() {
+    let folder = folder();
+    let path = path_in(&folder, "report.json");
+    let run = render(&["--json", &path, "--spp", "1", "--max-depth", "1"]).ends_with(0);
+    assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("", ""));
+    let text = std::fs::read_to_string(path).expect("the report");
+    let report: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(report.get("rays"), None);
+    assert_eq!(
+        report["relative_error"],
+        Value::Null,
+        "one sample has no variance"
+    );
+    assert_eq!(report["max_depth"], 1);
+}
+
+#[test]
+fn a_scene_without_light_is_warned_of() {
+    let folder = folder();
+    let scene = path_in(&folder, "dark.gltf");
+    let empty = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{}]}"#;
+    std::fs::write(&scene, empty).expect("a file");
+    let run = render_scene(&scene, &["--json", "-"]).ends_with(0);
+    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+    assert!(run.stderr.starts_with("warning: the scene has no light"));
+    assert!(run.stderr.contains("--env 1"), "{}", run.stderr);
+    assert_eq!(run.json()["warnings"].as_array().map(Vec::len), Some(1));
+    assert_eq!(run.json()["mean_radiance"][0], 0.0);
+
+    let quiet = render_scene(&scene, &["--json", "-", "--quiet"]).ends_with(0);
+    assert_eq!(quiet.stderr, "");
+    assert_eq!(quiet.json()["warnings"].as_array().map(Vec::len), Some(1));
+
+    let lit = render_scene(&scene, &["--json", "-", "--env", "1"]).ends_with(0);
+    assert_eq!(lit.stderr, "");
+    assert_eq!(lit.json()["mean_radiance"][0], 1.0);
+}
+
+#[test]
+fn the_default_size_follows_the_camera() {
+    let arguments = [
+        "render",
+        "scenes/many_lights.gltf",
+        "--spp",
+        "1",
+        "--json",
+        "-",
+    ];
+    let wide = [&arguments[..], &["--integrator", "normals"]].concat();
+    let report = cli_support::etendue(&wide).ends_with(0).json();
+    assert_eq!(
+        (&report["width"], &report["height"]),
+        (&512.into(), &341.into())
+    );
+}
+
+#[test]
+fn print_wgsl_prints_the_shader_and_renders_nothing() {
+    let run = render(&["--print-wgsl"]).ends_with(0);
+    assert!(run.stdout.contains("@compute"), "{}", run.stdout);
+    assert!(!run.stdout.contains("#include"));
+    assert!(run.stdout.contains("const HAS_ENVIRONMENT: bool = false;"));
+    assert_eq!(run.stderr, "");
+}
+
+#[test]
+fn the_same_command_gives_the_same_bits() {
+    let folder = folder();
+    let pixels = |name: &str, seed: &str, checked: bool| {
+        let path = path_in(&folder, name);
+        let mut arguments = vec!["-o", &path, "--seed", seed];
+        arguments.extend(checked.then_some("--checked"));
+        render(&arguments).ends_with(0);
+        exr::read(Path::new(&path)).expect("a readable EXR").0
+    };
+    let first = pixels("a.exr", "1", false);
+    assert_eq!(first, pixels("b.exr", "1", false));
+    assert_eq!(
+        first,
+        pixels("c.exr", "1", true),
+        "bounds checks change no bit"
+    );
+    assert_ne!(first, pixels("d.exr", "2", false));
+}
+
+#[test]
+fn the_device_may_come_from_the_environment() {
+    let arguments = [
+        "render",
+        "scenes/furnace.gltf",
+        "--size",
+        "4x4",
+        "--spp",
+        "1",
+        "--json",
+        "-",
+    ];
+    let run = |device: &str| {
+        let mut command = cli_support::command(&arguments);
+        let child = command.env("ETENDUE_DEVICE", device).spawn();
+        cli_support::finish(child.expect("the program starts"))
+    };
+    run("0").ends_with(0);
+    run("").ends_with(0);
+    let unknown = run("no such device").ends_with(3);
+    assert!(
+        unknown
+            .stderr
+            .starts_with("error: no Vulkan device matches")
+    );
+}

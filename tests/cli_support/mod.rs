@@ -1,0 +1,115 @@
+//! Runs the built program.
+
+// Each test file uses its own part of this one.
+#![allow(dead_code)]
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// What a run left behind.
+pub struct Run {
+    /// The exit code; none if a signal ended it.
+    pub code: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Run {
+    fn of(output: Output) -> Self {
+        let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+        Self {
+            code: output.status.code(),
+            stdout: text(output.stdout),
+            stderr: text(output.stderr),
+        }
+    }
+
+    /// Fails unless the program ended with `code`; shows what it said.
+    #[track_caller]
+    pub fn ends_with(self, code: i32) -> Self {
+        let Self { stdout, stderr, .. } = &self;
+        assert_eq!(
+            self.code,
+            Some(code),
+            "stdout:\n{stdout}\nstderr:\n{stderr}"
+        );
+        self
+    }
+
+    /// Fails unless it was refused with one sentence that holds each of `parts`.
+    #[track_caller]
+    pub fn refused(self, parts: &[&str]) {
+        let run = self.ends_with(2);
+        assert!(run.stderr.starts_with("error: "), "{}", run.stderr);
+        for part in parts {
+            assert!(run.stderr.contains(part), "no {part:?} in: {}", run.stderr);
+        }
+        for sign in ["panicked", "RUST_BACKTRACE", "Error {", "Some(", "Os {"] {
+            assert!(!run.stderr.contains(sign), "{}", run.stderr);
+        }
+        assert_eq!(run.stdout, "");
+    }
+
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e} in: {}", self.stdout))
+    }
+}
+
+/// The program with arguments, its streams in pipes.
+pub fn command<S: AsRef<OsStr>>(arguments: &[S]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_etendue"));
+    command
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+/// Runs the program to its end.
+pub fn etendue<S: AsRef<OsStr>>(arguments: &[S]) -> Run {
+    Run::of(command(arguments).output().expect("the program starts"))
+}
+
+/// Runs `etendue render scenes/cornell_box.gltf` at a tiny size, with further arguments.
+pub fn render<S: AsRef<OsStr>>(arguments: &[S]) -> Run {
+    render_scene("scenes/cornell_box.gltf", arguments)
+}
+
+/// Runs `etendue render SCENE` at a tiny size, with further arguments.
+pub fn render_scene<S: AsRef<OsStr>>(scene: &str, arguments: &[S]) -> Run {
+    let mut all: Vec<&OsStr> = ["render", scene, "--size", "16x12", "--spp", "4"]
+        .iter()
+        .map(OsStr::new)
+        .collect();
+    all.extend(arguments.iter().map(AsRef::as_ref));
+    etendue(&all)
+}
+
+/// Waits for a child and takes what it said.
+pub fn finish(child: std::process::Child) -> Run {
+    Run::of(child.wait_with_output().expect("the program ends"))
+}
+
+pub fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+/// A path in a folder, as text.
+pub fn path_in(folder: &tempfile::TempDir, name: &str) -> String {
+    text(&folder.path().join(name))
+}
+
+pub fn text(path: &Path) -> String {
+    path.to_str().expect("UTF-8").to_owned()
+}
+
+/// The shaders in a folder of their own.
+pub fn exported() -> (tempfile::TempDir, PathBuf) {
+    let folder = folder();
+    let shaders = folder.path().join("shaders");
+    etendue(&["shaders", "export", &text(&shaders)]).ends_with(0);
+    (folder, shaders)
+}

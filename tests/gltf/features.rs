@@ -1,0 +1,106 @@
+//! Extensions, features and summaries.
+
+use etendue::scene::*;
+use serde_json::json;
+
+use crate::common::*;
+use crate::seeds;
+
+#[test]
+fn extensions_that_are_only_used_are_warnings() {
+    let mut builder = Builder::textured();
+    builder.json["extensionsUsed"] = json!(["KHR_materials_clearcoat", "ACME_secret"]);
+    builder.json["materials"][0]["extensions"] = json!({"KHR_materials_sheen": {}});
+    builder.json["extras"] = json!({"extensions": {"NOT_one": {}}});
+    let scene = builder.scene();
+    let names: Vec<&str> = scene
+        .extensions
+        .iter()
+        .map(|extension| extension.name.as_str())
+        .collect();
+    assert_eq!(
+        names,
+        [
+            "ACME_secret",
+            "KHR_materials_clearcoat",
+            "KHR_materials_sheen"
+        ]
+    );
+    warned(
+        &scene,
+        "KHR_materials_clearcoat is not supported: the picture does not show clear coats",
+    );
+    warned(&scene, "KHR_materials_sheen is not supported");
+}
+
+#[test]
+fn features_follow_from_what_is_used() {
+    let plain = Features::of(&Builder::square().scene());
+    let set: Vec<&str> = plain
+        .flags()
+        .into_iter()
+        .filter(|flag| flag.1)
+        .map(|flag| flag.0)
+        .collect();
+    assert_eq!(
+        set,
+        [
+            "flat_normals",
+            "single_sided",
+            "lit",
+            "specular",
+            "metallic"
+        ]
+    );
+    let scene = seeds::textured().scene();
+    let rich = Features::of(&scene);
+    assert!(rich.base_color_texture && rich.specular_color_texture && rich.alpha_mask && rich.uv1);
+    assert!(
+        rich.texture_transform
+            && rich.wrap_mirror
+            && rich.filter_nearest
+            && rich.diffuse
+            && rich.ior
+    );
+    assert!(
+        !rich.alpha_blend && !rich.normals && !rich.texels_16 && !rich.point_light && !rich.unlit
+    );
+    let reason = rich
+        .reasons
+        .iter()
+        .find(|reason| reason.feature == "alpha_mask");
+    assert_eq!(
+        reason.map(|reason| reason.reason.as_str()),
+        Some("material 0")
+    );
+    let lights = Features::of(&seeds::nodes().scene());
+    assert!(
+        lights.point_light && lights.spot_light && lights.directional_light && lights.light_range
+    );
+    assert!(Features::all().flags().iter().all(|flag| flag.1));
+}
+
+#[test]
+fn summaries_count_instances() {
+    let summary = Summary::of(&seeds::nodes().scene());
+    assert_eq!(
+        (
+            summary.triangles,
+            summary.unique_triangles,
+            summary.unique_vertices
+        ),
+        (4, 2, 4)
+    );
+    assert_eq!(summary.cameras[1].kind, "orthographic");
+    assert_eq!(
+        summary
+            .lights
+            .iter()
+            .map(|light| light.kind)
+            .collect::<Vec<_>>(),
+        ["point", "spot", "directional"]
+    );
+    assert!(summary.extensions[0].supported);
+    let json = serde_json::to_value(&summary).expect("a summary can be written");
+    assert_eq!(json["bounds"].as_array().map(Vec::len), Some(2));
+}

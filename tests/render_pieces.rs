@@ -1,0 +1,59 @@
+//! No bit of the picture depends on how the work is cut into pieces.
+
+use std::ops::ControlFlow;
+
+use etendue::accel::BuildOptions;
+use etendue::gpu::Device;
+use etendue::render::{Film, GpuScene, Prepared, Renderer, Settings};
+use etendue::scene::gltf;
+use etendue::shader::ShaderLibrary;
+
+fn bits(film: &Film) -> &[u8] {
+    bytemuck::cast_slice(&film.pixels)
+}
+
+#[test]
+fn the_picture_does_not_depend_on_the_pieces() {
+    let scene = gltf::load("scenes/foliage.gltf".as_ref(), &Default::default()).expect("a scene");
+    let prepared = Prepared::new(&scene, 0, &BuildOptions::default()).expect("a flat scene");
+    let device = Device::open(None).expect("a Vulkan device");
+    let gpu_scene = GpuScene::upload(&device, &prepared).expect("memory");
+    let library = ShaderLibrary::embedded();
+    let render = |piece_tiles, pass_samples| {
+        let settings = Settings {
+            // No side is a multiple of a tile.
+            width: 45,
+            height: 27,
+            spp: 11,
+            stats: true,
+            piece_tiles,
+            pass_samples,
+            ..Settings::default()
+        };
+        let renderer = Renderer::new(&device, &library, &scene, &prepared, &gpu_scene, &settings);
+        let mut renderer = renderer.expect("a kernel");
+        let mut pieces = 0;
+        let mut count = |_: &Renderer<'_>, _: &_| {
+            pieces += 1;
+            ControlFlow::Continue(())
+        };
+        assert!(renderer.render(&mut count).expect("a render").is_continue());
+        (pieces, renderer.film().expect("a film"))
+    };
+    let (one, whole) = render(Some(u32::MAX), Some(u64::MAX));
+    assert_eq!(one, 1, "24 tiles in one piece, 11 samples in one pass");
+    for (tiles, samples, pieces) in [(1, 11, 24), (5, 1, 55), (7, 3, 16), (24, 4, 3)] {
+        let (count, film) = render(Some(tiles), Some(samples));
+        assert_eq!(
+            count, pieces,
+            "{tiles} tiles a piece, {samples} samples a pass"
+        );
+        assert_eq!(
+            bits(&film),
+            bits(&whole),
+            "{tiles} tiles, {samples} samples"
+        );
+    }
+    let (_, measured) = render(None, None);
+    assert_eq!(bits(&measured), bits(&whole));
+}
