@@ -111,16 +111,31 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, index: u32, b: v
     orient(s, normal);
 }
 
-// Turn both normals towards the ray's origin. A shading normal that faces away from it (at a
-// silhouette of a coarse mesh, or by a strong normal map) gives way to the geometric one.
+// Turn both normals towards the ray's origin.
 fn orient(s: ptr<function, Surface>, shading_normal: vec3f) {
     let side = select(1.0, -1.0, (*s).back_face);
     (*s).normal *= side;
-    var n = shading_normal * side;
-    if (dot(n, (*s).wo) <= 0.0) {
-        n = (*s).normal;
+    var n = (*s).normal;
+    if (HAS_NORMALS || HAS_NORMAL_TEXTURE) {
+        n = reflecting_normal(n, shading_normal * side, (*s).wo);
     }
     (*s).shading = frame_from_z(n);
+}
+
+// The shading normal, bent so far that the mirror direction of wo lies above the surface. At the
+// silhouette of a coarse mesh or under a strong normal map it might not, and the surface would be
+// black there (the remedy of Keller et al. 2017, The Iray Light Transport Simulation and
+// Rendering System, appendix A.3; the least cosine is that of Cycles).
+fn reflecting_normal(geometric: vec3f, shading: vec3f, wo: vec3f) -> vec3f {
+    let mirror = 2.0 * dot(shading, wo) * shading - wo;
+    let height = dot(mirror, geometric);
+    let least = min(0.9 * dot(wo, geometric), 0.01);
+    if (height >= least) {
+        return shading;
+    }
+    let along = normalize_or(mirror - height * geometric, vec3f(0.0));
+    let lifted = least * geometric + sqrt(1.0 - least * least) * along;
+    return normalize_or(wo + lifted, geometric);
 }
 
 fn perturb_normal(s: Surface, normal: vec3f, tangent: vec4f) -> vec3f {

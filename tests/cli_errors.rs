@@ -77,19 +77,10 @@ fn values_out_of_range() {
         render(&[&["--json", "-"], arguments].concat()).refused(&[]);
     };
     for size in ["0x4", "4x0", "4", "axb", "-4x4", "70000x4", "99999999999x1"] {
-        // The last of two sizes would be a usage error of another kind.
-        etendue(&[
-            "render",
-            "scenes/furnace.gltf",
-            "--json",
-            "-",
-            "--size",
-            size,
-        ])
-        .refused(&[]);
+        refused(&["--size", size]);
     }
     for spp in ["0", "-1", "1.5", "4294967296", "x"] {
-        etendue(&["render", "scenes/furnace.gltf", "--json", "-", "--spp", spp]).refused(&[]);
+        refused(&["--spp", spp]);
     }
     refused(&["--max-depth", "0"]);
     refused(&["--seed", "-1"]);

@@ -5,7 +5,7 @@ mod cli_support;
 use std::path::Path;
 
 use cli_support::{folder, path_in, render, render_scene};
-use etendue::image::exr;
+use etendue::image::{Metadata, Picture, exr};
 use serde_json::Value;
 
 #[test]
@@ -142,9 +142,7 @@ fn a_report_alone_goes_to_a_file_and_leaves_out_what_was_not_counted() {
 #[test]
 fn a_scene_without_light_is_warned_of() {
     let folder = folder();
-    let scene = path_in(&folder, "dark.gltf");
-    let empty = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{}]}"#;
-    std::fs::write(&scene, empty).expect("a file");
+    let scene = empty_scene(&folder);
     let run = render_scene(&scene, &["--json", "-"]).ends_with(0);
     assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
     assert!(run.stderr.starts_with("warning: the scene has no light"));
@@ -159,6 +157,54 @@ fn a_scene_without_light_is_warned_of() {
     let lit = render_scene(&scene, &["--json", "-", "--env", "1"]).ends_with(0);
     assert_eq!(lit.stderr, "");
     assert_eq!(lit.json()["mean_radiance"][0], 1.0);
+}
+
+/// A file of a scene in which there is nothing.
+fn empty_scene(folder: &tempfile::TempDir) -> String {
+    let scene = path_in(folder, "empty.gltf");
+    let text = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{}]}"#;
+    std::fs::write(&scene, text).expect("a file");
+    scene
+}
+
+#[test]
+fn an_environment_may_be_a_picture() {
+    let folder = folder();
+    let (scene, sky) = (empty_scene(&folder), path_in(&folder, "sky.exr"));
+    let texels: Vec<f32> = [1.0, 2.0, f32::NAN].repeat(4 * 2);
+    let picture = Picture::new(4, 2).with_rgb("", &texels);
+    exr::write(&sky, &picture, &Metadata::default()).expect("a picture");
+    let arguments = ["--env", &sky, "--env-scale", "0.5", "--json", "-"];
+    let run = render_scene(&scene, &arguments).ends_with(0);
+    assert_eq!(
+        run.json()["mean_radiance"],
+        serde_json::json!([0.5, 1.0, 0.0])
+    );
+    assert!(run.stderr.contains("8 texels"), "{}", run.stderr);
+}
+
+#[test]
+fn exposure_and_tone_map_shape_the_png_alone() {
+    let folder = folder();
+    let (scene, png, exr_path) = (
+        empty_scene(&folder),
+        path_in(&folder, "a.png"),
+        path_in(&folder, "a.exr"),
+    );
+    let outputs = ["-o", &png, "-o", &exr_path, "--env", "0.25"];
+    let first_pixel = |arguments: &[&str]| {
+        render_scene(&scene, &[&outputs, arguments].concat()).ends_with(0);
+        let (picture, _) = exr::read(&exr_path).expect("a readable EXR");
+        assert_eq!(picture.interleaved_rgb("").expect("colour")[0], 0.25);
+        image::open(&png).expect("a readable PNG").into_rgb8()[(0, 0)].0
+    };
+    // The sRGB curve at 0.25 and at 0.5.
+    assert_eq!(first_pixel(&["--tonemap", "none"]), [137; 3]);
+    assert_eq!(
+        first_pixel(&["--tonemap", "none", "--exposure", "1"]),
+        [188; 3]
+    );
+    assert_ne!(first_pixel(&["--tonemap", "agx"]), [137; 3]);
 }
 
 #[test]
@@ -183,7 +229,7 @@ fn the_default_size_follows_the_camera() {
 fn print_wgsl_prints_the_shader_and_renders_nothing() {
     let run = render(&["--print-wgsl"]).ends_with(0);
     assert!(run.stdout.contains("@compute"), "{}", run.stdout);
-    assert!(!run.stdout.contains("#include"));
+    assert!(!run.stdout.lines().any(|line| line.starts_with("#include")));
     assert!(run.stdout.contains("const HAS_ENVIRONMENT: bool = false;"));
     assert_eq!(run.stderr, "");
 }

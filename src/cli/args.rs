@@ -9,8 +9,9 @@ use super::parse;
 use crate::image::ToneMap;
 use crate::scene::Selector;
 
-/// Arguments of `etendue render`.
+/// Arguments of `etendue render`. Of a flag that takes one value and is given again, the last counts.
 #[derive(Debug, Args)]
+#[command(args_override_self = true)]
 pub struct RenderArgs {
     /// A .gltf or .glb file
     #[arg(value_name = "SCENE")]

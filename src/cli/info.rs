@@ -7,8 +7,7 @@ use clap::Args;
 
 use super::exit::Exit;
 use super::{info_text, message};
-use crate::scene::gltf::LoadOptions;
-use crate::scene::{self, Selector, Summary};
+use crate::scene::{Selector, Summary, gltf};
 
 /// Arguments of `etendue info`.
 #[derive(Debug, Args)]
@@ -31,10 +30,10 @@ pub struct InfoArgs {
 /// # Errors
 /// The file is malformed.
 pub fn run(args: &InfoArgs) -> Result<Exit> {
-    let options = LoadOptions {
+    let options = gltf::LoadOptions {
         scene: args.scene.clone(),
     };
-    let scene = scene::gltf::load(&args.file, &options)?;
+    let scene = gltf::load(&args.file, &options)?;
     let valid = scene.validate();
     valid.with_context(|| args.file.display().to_string())?;
     let summary = Summary::of(&scene);

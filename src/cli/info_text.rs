@@ -161,7 +161,7 @@ fn short(x: f64) -> String {
     if magnitude != 0.0 && !(1e-4..1e6).contains(&magnitude) {
         return format!("{x:.4e}");
     }
-    let digits = 4 - magnitude.max(1.0).log10().floor() as usize;
+    let digits = 4_usize.saturating_sub(magnitude.max(1.0).log10().floor() as usize);
     let text = format!("{x:.digits$}");
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),

@@ -1,5 +1,6 @@
 //! Ctrl-C and SIGTERM.
 
+use std::io::{self, IsTerminal};
 use std::process;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering::SeqCst};
@@ -25,7 +26,9 @@ impl Interrupt {
         let seen = Arc::clone(&state);
         let handler = move || match seen.compare_exchange(ARMED, REQUESTED, SeqCst, SeqCst) {
             Ok(_) if quiet => {}
-            Ok(_) => message::note("stopping: once more to quit without saving"),
+            Ok(_) => message::note(&on_its_own_line(
+                "stopping: once more to quit without saving",
+            )),
             Err(_) => process::exit(i32::from(Exit::Interrupted.code())),
         };
         // A second handler, as in tests of the library, is the only way to fail.
@@ -42,4 +45,10 @@ impl Interrupt {
     pub fn requested(&self) -> bool {
         self.0.load(SeqCst) == REQUESTED
     }
+}
+
+/// A terminal's cursor stands behind the progress.
+fn on_its_own_line(text: &str) -> String {
+    let prefix = if io::stderr().is_terminal() { "\n" } else { "" };
+    format!("{prefix}{text}")
 }

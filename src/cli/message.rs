@@ -70,7 +70,10 @@ fn shader_report(error: &ShaderError) -> String {
 /// The panic hook: one line instead of a backtrace.
 pub fn internal_error(info: &PanicHookInfo<'_>) {
     let place = info.location().map(|l| format!(" at {l}"));
-    let reason = info.payload_as_str().unwrap_or("unknown reason");
+    let payload = info.payload();
+    let text = payload.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    let reason = text.unwrap_or("unknown reason");
     note(&format!(
         "error: internal error{}: {reason}; this is a bug of étendue, please report it with the scene and the command",
         place.unwrap_or_default()

@@ -49,7 +49,7 @@ enum Command {
 
 /// Runs the program with the arguments of the process. No panic reaches the user.
 pub fn main() -> ExitCode {
-    std::panic::set_hook(Box::new(|info| message::internal_error(info)));
+    std::panic::set_hook(Box::new(message::internal_error));
     let run = AssertUnwindSafe(|| run(&Cli::parse()));
     let exit = catch_unwind(run).unwrap_or(Exit::Internal);
     exit.into()

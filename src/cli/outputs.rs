@@ -184,4 +184,25 @@ mod tests {
             assert!(format_of(Path::new(bad)).is_err(), "{bad}");
         }
     }
+
+    #[test]
+    fn a_picture_that_cannot_be_written_does_not_keep_others_from_it() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let inside = |name: &str| folder.path().join(name);
+        let outputs = Outputs {
+            pictures: vec![
+                (inside("no/a.exr"), Format::Exr),
+                (inside("b.exr"), Format::Exr),
+                (inside("c.png"), Format::Png),
+            ],
+            display: DisplaySettings::default(),
+            report: None,
+        };
+        let picture = Picture::new(1, 1).with_rgb("", &[0.5; 3]);
+        let written = outputs.write(&picture, &Metadata::default());
+        assert_eq!(written.errors.len(), 1);
+        assert!(written.errors[0].to_string().contains("no/a.exr"));
+        assert_eq!(written.paths.len(), 2);
+        assert!(inside("b.exr").exists() && inside("c.png").exists());
+    }
 }

@@ -17,8 +17,7 @@ use crate::accel::BuildOptions;
 use crate::gpu::Device;
 use crate::image::{Channel, Layer, Picture};
 use crate::render::{Film, GpuScene, Prepared};
-use crate::scene::gltf::LoadOptions;
-use crate::scene::{self, Features, Scene};
+use crate::scene::{Features, Scene, gltf};
 
 /// Integrators that show something in a scene without light.
 const NEED_NO_LIGHT: [&str; 4] = ["albedo", "ao", "depth", "normals"];
@@ -91,10 +90,10 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
 fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
     // The environment first: it is read faster, so a mistake in it is found sooner.
     let environment = environment::load(args, warnings)?;
-    let options = LoadOptions {
+    let options = gltf::LoadOptions {
         scene: args.scene.clone(),
     };
-    let mut scene = scene::gltf::load(&args.file, &options)?;
+    let mut scene = gltf::load(&args.file, &options)?;
     if environment.is_some() {
         scene.environment = environment;
     }

@@ -297,7 +297,9 @@ impl<'a> Renderer<'a> {
             * u64::from(TILE_LANES);
         let tiles = match self.settings.piece_tiles {
             Some(tiles) => u64::from(tiles.max(1)),
-            None => (fitting as u64 / u64::from(TILE_LANES)).max(16),
+            // A first guess, until the first piece has been timed.
+            None if self.rate == 0.0 => 16,
+            None => (fitting as u64 / u64::from(TILE_LANES)).max(2),
         };
         (tiles * u64::from(TILE_LANES)).min(most.max(u64::from(TILE_LANES))) as u32
     }

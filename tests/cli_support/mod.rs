@@ -80,10 +80,9 @@ pub fn render<S: AsRef<OsStr>>(arguments: &[S]) -> Run {
 
 /// Runs `etendue render SCENE` at a tiny size, with further arguments.
 pub fn render_scene<S: AsRef<OsStr>>(scene: &str, arguments: &[S]) -> Run {
-    let mut all: Vec<&OsStr> = ["render", scene, "--size", "16x12", "--spp", "4"]
-        .iter()
-        .map(OsStr::new)
-        .collect();
+    // A flag that is given again takes its last value.
+    let first = ["render", scene, "--size", "16x12", "--spp", "4"];
+    let mut all: Vec<&OsStr> = first.iter().map(OsStr::new).collect();
     all.extend(arguments.iter().map(AsRef::as_ref));
     etendue(&all)
 }

@@ -1,0 +1,63 @@
+//! Light sampling in a scene by itself.
+
+use std::sync::Arc;
+
+use etendue::scene::{Environment, EnvironmentImage, Scene};
+use glam::Vec3;
+
+use super::scenes::{Stage, empty_scene};
+use super::{SAMPLES, Setup};
+
+/// Light sampling in a scene, from a point with a normal.
+pub struct Bench {
+    pub stage: Stage,
+    pub setup: Setup,
+    point: [f32; 4],
+    normal: [f32; 4],
+}
+
+/// Direction and pdf, weight and whether at infinity, position and whether delta.
+pub type Drawn = [[f32; 4]; 3];
+
+impl Bench {
+    pub fn new(scene: &Scene, point: Vec3, normal: Vec3) -> Self {
+        let stage = Stage::new(scene);
+        Self {
+            setup: Setup::new().with(stage.constants()),
+            stage,
+            point: point.extend(0.0).to_array(),
+            normal: normal.normalize().extend(0.0).to_array(),
+        }
+    }
+
+    pub fn draw(&self, entry: &str, seed: u32) -> Vec<Drawn> {
+        let kernel = self.setup.kernel("lights", entry);
+        let inputs = [self.point, self.normal];
+        let n = SAMPLES as usize;
+        kernel.run(SAMPLES, [seed, 0, 0], &inputs, n, &self.stage.buffers())
+    }
+
+    pub fn evaluate(&self, entry: &str, directions: &[[f32; 4]]) -> Vec<[f32; 4]> {
+        let kernel = self.setup.kernel("lights", entry);
+        let mut inputs = vec![self.point, self.normal];
+        inputs.extend(directions);
+        let n = directions.len();
+        kernel.run(n as u32, [0; 3], &inputs, n, &self.stage.buffers())
+    }
+}
+
+pub fn xyz(v: &[f32; 4]) -> [f32; 3] {
+    [v[0], v[1], v[2]]
+}
+
+/// A scene of nothing but an environment.
+pub fn environment(image: Option<EnvironmentImage>) -> Scene {
+    Scene {
+        environment: Some(Environment {
+            radiance: [1.0, 2.0, 0.5],
+            rotation: 0.9,
+            image: image.map(Arc::new),
+        }),
+        ..empty_scene()
+    }
+}

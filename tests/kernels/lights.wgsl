@@ -1,0 +1,69 @@
+// Light sampling in a scene, from a point of a surface.
+
+#include "math/float.wgsl"
+#include "light.wgsl"
+
+@group(0) @binding(13) var<uniform> params: vec4u;
+// The point, the shading normal, then directions.
+@group(0) @binding(14) var<storage, read> inputs: array<vec4f>;
+@group(0) @binding(15) var<storage, read_write> outputs: array<vec4f>;
+
+fn test_surface() -> Surface {
+    var s: Surface;
+    s.position = inputs[0].xyz;
+    s.normal = inputs[1].xyz;
+    s.shading = frame_from_z(inputs[1].xyz);
+    return s;
+}
+
+fn write(index: u32, s: LightSample) {
+    outputs[3u * index] = vec4f(s.wi, s.pdf);
+    outputs[3u * index + 1u] = vec4f(s.weight, select(0.0, 1.0, s.at_infinity));
+    outputs[3u * index + 2u] = vec4f(s.position, select(0.0, 1.0, s.delta));
+}
+
+// Any light; params.y is the seed.
+@compute @workgroup_size(64)
+fn sample_any(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x < params.x) {
+        var random = sampler_begin(vec2u(5u, 9u), vec2u(id.x, 0u), params.y);
+        write(id.x, sample_light(test_surface(), &random));
+    }
+}
+
+@compute @workgroup_size(64)
+fn sample_environment(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x < params.x) {
+        var random = sampler_begin(vec2u(5u, 9u), vec2u(id.x, 0u), params.y);
+        let u = next_2d(&random);
+        write(id.x, environment_sample(test_surface(), u, &random));
+    }
+}
+
+// Radiance and pdf of the environment.
+@compute @workgroup_size(64)
+fn evaluate_environment(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x < params.x) {
+        let d = inputs[2u + id.x].xyz;
+        outputs[id.x] = vec4f(environment_radiance(d), environment_pdf(inputs[1].xyz, d));
+    }
+}
+
+// Radiance of the triangle that a direction meets, and the density with which light sampling
+// returns the direction, as the path integrator computes it for a hit.
+@compute @workgroup_size(64)
+fn evaluate_triangles(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x >= params.x) {
+        return;
+    }
+    let ray = free_ray(inputs[0].xyz, inputs[2u + id.x].xyz);
+    let hit = intersect(ray, false, 0u);
+    var result = vec4f(0.0);
+    if (hit.triangle != NONE) {
+        let s = surface_at(ray, hit);
+        let distance = stable_length(s.position - ray.origin);
+        let pdf = light_triangle_pdf(distance, abs(dot(s.wo, s.normal)), s.area);
+        result = vec4f(emitted_radiance(s), lights[s.light].probability * pdf);
+    }
+    outputs[id.x] = result;
+}
