@@ -8,6 +8,7 @@ use super::args::RenderArgs;
 use super::interrupt::Interrupt;
 use super::message::Warnings;
 use super::progress::ProgressLine;
+use super::report::warn_non_finite;
 use super::settings::aov_integrators;
 use crate::gpu::Device;
 use crate::render::{Film, GpuScene, Prepared, RenderError, Renderer, Settings, program};
@@ -116,31 +117,55 @@ fn share_overrides(
     Ok(())
 }
 
+/// Films by integrator, and why there are no more of them.
+#[derive(Default)]
+pub struct Layers {
+    /// The AOVs rendered, with the names of their integrators.
+    pub films: Vec<(String, Film)>,
+    /// What went wrong. It must not cost the picture, which is done by then.
+    pub failure: Option<anyhow::Error>,
+}
+
 /// Renders the AOVs; an interruption ends it, with what there is.
-///
-/// # Errors
-/// As [`Renderer::render`].
 pub fn render(
     args: &RenderArgs,
     stage: Stage<'_>,
     aovs: &[Settings],
     interrupt: &Interrupt,
     warnings: &mut Warnings,
-) -> Result<Vec<(String, Film)>> {
-    let mut films = Vec::new();
+) -> Layers {
+    let mut layers = Layers::default();
     for aov in aovs {
         if interrupt.requested() {
             warnings.add(format!("interrupted before {} was rendered", label(aov)));
             continue;
         }
-        let mut renderer = stage.renderer(aov).with_context(|| label(aov))?;
-        let done = run(&mut renderer, aov, interrupt, args.quiet);
-        if done.with_context(|| label(aov))?.is_break() {
-            warnings.add(format!("interrupted: {} is incomplete", label(aov)));
+        let film = render_one(args, stage, aov, interrupt, warnings);
+        match film.with_context(|| label(aov)) {
+            Ok(film) => layers.films.push((aov.integrator.clone(), film)),
+            Err(error) => {
+                layers.failure = Some(error);
+                break;
+            }
         }
-        films.push((aov.integrator.clone(), renderer.film()?));
     }
-    Ok(films)
+    layers
+}
+
+fn render_one(
+    args: &RenderArgs,
+    stage: Stage<'_>,
+    aov: &Settings,
+    interrupt: &Interrupt,
+    warnings: &mut Warnings,
+) -> Result<Film, RenderError> {
+    let mut renderer = stage.renderer(aov)?;
+    if run(&mut renderer, aov, interrupt, args.quiet)?.is_break() {
+        warnings.add(format!("interrupted: {} is incomplete", label(aov)));
+    }
+    let film = renderer.film()?;
+    warn_non_finite(&film, &label(aov), warnings);
+    Ok(film)
 }
 
 /// Renders with a progress line until all is done or the user interrupts.

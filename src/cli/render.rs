@@ -4,19 +4,19 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 
-use super::aov::{self, Stage};
+use super::aov::{self, Layers, Stage};
 use super::args::RenderArgs;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::message::{self, Warnings};
 use super::metadata::metadata;
-use super::outputs::{Outputs, Written};
-use super::report::{Report, Seconds, timed, warn_non_finite};
+use super::outputs::Outputs;
+use super::report::{Report, Seconds, timed};
 use super::{environment, settings, shaders};
 use crate::accel::BuildOptions;
 use crate::gpu::Device;
-use crate::image::{Channel, Layer, Picture};
-use crate::render::{Film, GpuScene, Prepared};
+use crate::image::{Channel, Layer, Metadata, Picture};
+use crate::render::{Film, GpuScene, Prepared, Renderer, Settings};
 use crate::scene::{Features, Scene, gltf};
 
 /// Integrators that show something in a scene without light.
@@ -64,27 +64,60 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
 
     // From samples to a picture.
     interrupt.arm();
-    let _ = aov::run(&mut renderer, &settings, &interrupt, args.quiet)?;
-    let film = renderer.film()?;
-    let layers = timed(&mut time.aov, || {
-        aov::render(args, stage, &aovs, &interrupt, &mut warnings)
-    })?;
+    let (film, failure) = draw(&mut renderer, &settings, &interrupt, args.quiet)?;
+    let layers = timed(&mut time.aov, || match failure {
+        Some(_) => Layers {
+            failure,
+            ..Layers::default()
+        },
+        None => aov::render(args, stage, &aovs, &interrupt, &mut warnings),
+    });
 
     // From the picture to files.
     let mut report = Report::new(args, &scene, &settings, device.info());
+    report.seconds = time;
     report.add_film(&film, &renderer.progress(), args.stats, &mut warnings);
     report.interrupted = interrupt.requested();
     report.device_bytes = device.peak_bytes_in_use();
-    let metadata = metadata(args, &settings, &renderer, &report);
-    let picture = picture(args, &film, layers, &mut warnings);
-    let written = timed(&mut time.write, || outputs.write(&picture, &metadata));
-    time.render = report.seconds.render;
-    time.total = start.elapsed().as_secs_f64();
-    report.seconds = time;
-    report.outputs.clone_from(&written.paths);
     report.warnings = warnings.list().to_vec();
-    let reported = outputs.write_report(&report);
-    Ok(verdict(&report, &written, reported))
+    let metadata = metadata(args, &settings, &renderer, &report);
+    let picture = picture(args, &film, &layers.films);
+    let errors = write(&outputs, &picture, &metadata, &mut report, start);
+    Ok(verdict(&report, layers.failure.into_iter().chain(errors)))
+}
+
+/// Draws the samples. Should the device give up on the way, what it has drawn until then is worth
+/// keeping: gives the film and the reason.
+fn draw(
+    renderer: &mut Renderer<'_>,
+    settings: &Settings,
+    interrupt: &Interrupt,
+    quiet: bool,
+) -> Result<(Film, Option<anyhow::Error>)> {
+    match aov::run(renderer, settings, interrupt, quiet) {
+        Ok(_) => Ok((renderer.film()?, None)),
+        Err(error) => match renderer.film() {
+            Ok(film) if film.samples() > 0 => Ok((film, Some(error.into()))),
+            _ => Err(error.into()),
+        },
+    }
+}
+
+/// Writes all that was asked for. An output that fails does not keep the others from being written.
+fn write(
+    outputs: &Outputs,
+    picture: &Picture,
+    metadata: &Metadata,
+    report: &mut Report,
+    start: Instant,
+) -> Vec<anyhow::Error> {
+    let mut written = timed(&mut report.seconds.write, || {
+        outputs.write(picture, metadata)
+    });
+    report.outputs = written.paths;
+    report.seconds.total = start.elapsed().as_secs_f64();
+    written.errors.extend(outputs.write_report(report).err());
+    written.errors
 }
 
 fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
@@ -130,17 +163,11 @@ fn has_light(f: &Features) -> bool {
 }
 
 /// The layers of the file: the picture, the AOVs, the variance.
-fn picture(
-    args: &RenderArgs,
-    film: &Film,
-    aovs: Vec<(String, Film)>,
-    warnings: &mut Warnings,
-) -> Picture {
+fn picture(args: &RenderArgs, film: &Film, aovs: &[(String, Film)]) -> Picture {
     let mut picture = Picture::new(film.width as usize, film.height as usize);
     picture.layers.push(layer("", film.channels()));
     for (name, film) in aovs {
-        warn_non_finite(&film, &format!("AOV \"{name}\""), warnings);
-        picture.layers.push(layer(&name, film.channels()));
+        picture.layers.push(layer(name, film.channels()));
     }
     if args.aov.iter().any(|name| name == settings::VARIANCE) {
         let variance = film.variance_channels();
@@ -162,19 +189,18 @@ fn layer(name: &str, channels: [Vec<f32>; 3]) -> Layer {
     }
 }
 
-/// Says which outputs failed, and how the program ends.
-fn verdict(report: &Report, written: &Written, reported: Result<()>) -> Exit {
-    let failed = reported.err();
-    written
-        .errors
-        .iter()
-        .chain(&failed)
-        .for_each(message::error);
-    if !written.errors.is_empty() || failed.is_some() {
-        Exit::BadInput
-    } else if report.interrupted {
-        Exit::Interrupted
-    } else {
-        Exit::Fine
-    }
+/// Says what failed, and how the program ends.
+fn verdict(report: &Report, errors: impl Iterator<Item = anyhow::Error>) -> Exit {
+    let usual = match report.interrupted {
+        true => Exit::Interrupted,
+        false => Exit::Fine,
+    };
+    // The first failure decides.
+    errors.fold(usual, |exit, error| {
+        message::error(&error);
+        match exit {
+            Exit::Fine | Exit::Interrupted => Exit::of(&error),
+            failed => failed,
+        }
+    })
 }
