@@ -1,7 +1,8 @@
 //! Emitters: strength, sides, unlit surfaces, colours.
 
-use etendue::scene::{Material, Scene, gltf};
-use glam::{DVec3, Vec3, Vec4};
+use etendue::scene::{Filter, Image, Material, Sampler, Scene, Texels, Texture, TextureSlot};
+use etendue::scene::{Wrap, gltf};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use super::scene_common::statistics::assert_estimate;
 use super::scene_common::{
@@ -138,4 +139,59 @@ fn colours_multiply_channel_by_channel() {
     let film = super::receive(&scene, 4);
     let expected = [0.5, 0.5, 3.0].map(|x| x / std::f64::consts::PI);
     assert_exact("receiver", &film, expected);
+}
+
+/// Texture coordinate (0, 0) is the top left corner of the picture, as glTF has it.
+#[test]
+fn a_picture_hangs_by_its_top_left_corner() {
+    let mut material = unlit();
+    material.base_color_texture = Some(TextureSlot {
+        texture: 0,
+        tex_coord: 0,
+        matrix: [Vec2::X, Vec2::Y],
+        offset: Vec2::ZERO,
+    });
+    let mut builder = SceneBuilder::new();
+    builder.quad(material, DVec3::ZERO, DVec3::X, DVec3::Y);
+    builder.parallel(DVec3::Z, DVec3::ZERO, 1.0);
+    let mut scene = builder.scene;
+    // Corners from the bottom left, counter-clockwise.
+    let corners = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+    scene.meshes[0].tex_coords[0] = corners.map(Vec2::from).to_vec();
+    scene.textures.push(Texture {
+        image: 0,
+        sampler: Sampler {
+            wrap_u: Wrap::Repeat,
+            wrap_v: Wrap::Repeat,
+            filter: Filter::Nearest,
+        },
+    });
+    let [red, green, blue, white] = [
+        [255, 0, 0, 255],
+        [0, 255, 0, 255],
+        [0, 0, 255, 255],
+        [255; 4],
+    ];
+    scene.images.push(Image {
+        name: "four colours".into(),
+        width: 2,
+        height: 2,
+        texels: Texels::Rgba8(vec![red, green, blue, white]),
+    });
+    let film = render(&scene, &square(2, 16, 1));
+    let seen: Vec<_> = (0..4).map(|i| film.mean(i)).collect();
+    let expected = [
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 1.0, 1.0],
+    ];
+    assert_eq!(seen, expected);
+}
+
+fn unlit() -> Material {
+    Material {
+        unlit: true,
+        ..Material::default()
+    }
 }
