@@ -17,7 +17,8 @@ fn Li(camera_ray: Ray, sampler: ptr<function, Sampler>) -> vec3f {
         if (count_step()) {
             break;
         }
-        let hit = intersect(ray, depth == 1u, hash2(vec2u(sampler.key ^ sampler.index, sampler.dimension)));
+        let seed = hash2(vec2u(sampler.key ^ sampler.index, sampler.dimension));
+        let hit = intersect(ray, depth == 1u, seed);
         if (hit.triangle == NONE) {
             if (HAS_ENVIRONMENT) {
                 L += beta * environment_radiance(ray.direction);
@@ -32,7 +33,7 @@ fn Li(camera_ray: Ray, sampler: ptr<function, Sampler>) -> vec3f {
         let bsdf = bsdf_at(surface);
         let wo = to_local(surface.shading, surface.wo);
         if (HAS_PUNCTUAL_LIGHTS) {
-            L += beta * sum_punctual_lights(surface, bsdf, wo);
+            L += beta * sum_punctual_lights(surface, bsdf, wo, seed ^ 0x5bd1e995u);
         }
         let u = next_2d(sampler);
         let choice = next_1d(sampler);
@@ -60,7 +61,7 @@ fn naive_direction(beta: ptr<function, vec3f>, bsdf: Bsdf, wo: vec3f, u: vec2f, 
     return wi;
 }
 
-fn sum_punctual_lights(s: Surface, bsdf: Bsdf, wo: vec3f) -> vec3f {
+fn sum_punctual_lights(s: Surface, bsdf: Bsdf, wo: vec3f, seed: u32) -> vec3f {
     var sum = vec3f(0.0);
     for (var i = 0u; i < frame.punctual_count; i += 1u) {
         if (count_step()) {
@@ -69,7 +70,7 @@ fn sum_punctual_lights(s: Surface, bsdf: Bsdf, wo: vec3f) -> vec3f {
         let light = punctual_sample(s, i);
         let wi = to_local(s.shading, light.wi);
         if (light.pdf > 0.0 && wi.z > 0.0 && dot(light.wi, s.normal) > 0.0) {
-            sum += bsdf_eval(bsdf, wo, wi) * light.weight * visibility_of_light(s, light, 0u);
+            sum += bsdf_eval(bsdf, wo, wi) * light.weight * visibility_of_light(s, light, hash2(vec2u(seed, i)));
         }
     }
     return sum;

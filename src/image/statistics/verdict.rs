@@ -37,7 +37,7 @@ pub struct Verdict {
     pub detectable_local_bias: f64,
     /// (mean of a − mean of b) / mean of b over the whole picture.
     pub relative_bias: f64,
-    /// Standard error of `relative_bias`.
+    /// Standard error of `relative_bias`, channels taken as fully correlated.
     pub relative_bias_error: f64,
 }
 
@@ -120,19 +120,24 @@ fn detectable_biases(outcomes: &[Outcome], level: f64) -> [f64; 2] {
     })
 }
 
-/// Relative bias of the whole picture and its standard error, over all channels.
+/// Relative bias of the whole picture and its standard error, over all channels. Channels share
+/// their paths, so that their errors add as they are, not squared: right where light is grey, an
+/// upper bound elsewhere.
 fn whole(outcomes: &[Outcome]) -> (f64, f64) {
-    let (mut difference, mut reference, mut variance) = (0.0, 0.0, 0.0);
+    let (mut difference, mut reference, mut variances) = (0.0, 0.0, [0.0; 3]);
     for Outcome { tile, .. } in outcomes {
         let n = (tile.width * tile.height) as f64;
         let [a, b] = tile.estimates;
         difference += n * (a.mean - b.mean);
         reference += n * b.mean;
-        variance += n * n * (a.variance + b.variance);
+        variances[tile.channel] += n * n * (a.variance + b.variance);
     }
     match difference {
         0.0 if reference == 0.0 => (0.0, 0.0),
-        _ => (difference / reference, variance.sqrt() / reference.abs()),
+        _ => {
+            let error: f64 = variances.map(f64::sqrt).iter().sum();
+            (difference / reference, error / reference.abs())
+        }
     }
 }
 

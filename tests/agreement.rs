@@ -1,0 +1,193 @@
+//! Estimators that share little agree on every scene of `scenes/`: light sampling alone, BSDF
+//! sampling alone, both with multiple importance sampling, and the naive one; the Sobol' sampler
+//! and the independent one; roulette from the first edge and none.
+//!
+//! Every comparison is of two renders with samples of their own: Welch's t of the mean of each tile
+//! and channel, false alarms at most [`ALPHA`] a comparison (Šidák), and the mean of the whole
+//! picture, |z| < 4.5. With 36 comparisons a right program fails on a new device with a chance of
+//! 0.4 %; on one device nothing varies. `--nocapture` prints each verdict and the smallest
+//! relative bias that it would have seen; `ETENDUE_LONG=1` draws 16 times the samples.
+
+mod scene_common;
+
+use etendue::image::statistics::Verdict;
+use etendue::render::{Film, Settings};
+use etendue::scene::Scene;
+
+use scene_common::statistics::{MAX_Z, compare_films};
+use scene_common::{effort, load, render, square, with_integrator, without_roulette};
+
+/// False alarms of a comparison's tiles together.
+const ALPHA: f64 = 1e-4;
+/// Side of a picture and of its tiles, pixels.
+const SIZE: u32 = 24;
+const TILE: usize = 8;
+/// Edges of the longest path.
+const DEPTH: u32 = 4;
+
+/// Smallest perceptual roughness that estimators without BSDF sampling are asked to meet: where
+/// lobes are sharper their samples are so rarely large that neither the mean nor its error can be
+/// told from an affordable number.
+const ROUGH: f32 = 0.3;
+/// Largest radiance of a lamp that the naive estimator is asked to find: brighter ones are so small
+/// that a uniform direction meets them less than once in ten thousand.
+const BRIGHT: f32 = 100.0;
+
+/// Renders of a scene, all alike but for what is compared. Pixels that see a lamp are left out: what
+/// is seen directly is the same for all, and its noise would hide what differs.
+struct Bench<'a> {
+    scene: &'a Scene,
+    name: String,
+    lamps: Vec<bool>,
+}
+
+impl<'a> Bench<'a> {
+    fn new(name: &str, scene: &'a Scene) -> Self {
+        let seen = Settings {
+            sampler: "sobol".into(),
+            ..square(SIZE, 4096, 1)
+        };
+        let seen = render(scene, &seen);
+        let lit = |i| seen.mean(i) != [0.0; 3];
+        let mut lamps: Vec<bool> = (0..seen.pixels.len()).map(lit).collect();
+        // In a furnace there is nothing else.
+        if lamps.iter().all(|lamp| *lamp) {
+            lamps.fill(false);
+        }
+        Self {
+            scene,
+            name: name.into(),
+            lamps,
+        }
+    }
+
+    fn render(&self, settings: &Settings) -> Film {
+        let mut film = render(self.scene, settings);
+        for (pixel, lamp) in film.pixels.iter_mut().zip(&self.lamps) {
+            if *lamp {
+                (pixel.sum, pixel.sum_low) = Default::default();
+                (pixel.square, pixel.square_low) = Default::default();
+            }
+        }
+        film
+    }
+
+    /// Prints the verdict on b against a, and fails where it is bad.
+    fn assert_agree(&self, what: &str, a: &Film, b: &Film) {
+        let verdict = compare_films(b, a, TILE, ALPHA);
+        let z = verdict.relative_bias / verdict.relative_bias_error;
+        let z = if z.is_nan() { 0.0 } else { z };
+        let seen = 100.0 * smallest(&verdict);
+        let line = format!(
+            "{}, {what}: z = {z:+.2}, a bias of {seen:.3} % of the whole would have been seen; {verdict}",
+            self.name
+        );
+        println!("{line}");
+        assert!(verdict.pass && z.abs() < MAX_Z, "{line}");
+    }
+}
+
+/// Relative bias of the whole picture that its mean shows with a probability of 90 %.
+fn smallest(verdict: &Verdict) -> f64 {
+    (MAX_Z + 1.28) * verdict.relative_bias_error
+}
+
+fn settings(spp: u64, seed: u32) -> Settings {
+    Settings {
+        seed,
+        ..square(SIZE, spp * effort(), DEPTH)
+    }
+}
+
+fn check(name: &str) {
+    let scene = load(name);
+    let bench = Bench::new(name, &scene);
+    let reference = bench.render(&settings(256, 1));
+    let bsdf = with_integrator(&settings(512, 3), "path_bsdf");
+    bench.assert_agree("path_bsdf", &reference, &bench.render(&bsdf));
+    check_samplers_and_roulette(&bench, &reference);
+    let rough = roughened(&scene);
+    let lights = with_integrator(&settings(256, 2), "path_lights");
+    check_variant(&bench, &reference, &rough, &lights);
+    let naive = with_integrator(&settings(512, 4), "naive");
+    check_variant(&bench, &reference, &dimmed(&rough), &naive);
+}
+
+/// Compares an integrator with `path` on a variant of the scene; `reference` is of the scene itself.
+fn check_variant(bench: &Bench, reference: &Film, variant: &Scene, settings_of: &Settings) {
+    let what = &settings_of.integrator;
+    if variant.materials == bench.scene.materials {
+        return bench.assert_agree(what, reference, &bench.render(settings_of));
+    }
+    let bench = Bench::new(&format!("{}, a variant", bench.name), variant);
+    let reference = bench.render(&settings(256, 8));
+    bench.assert_agree(what, &reference, &bench.render(settings_of));
+}
+
+fn check_samplers_and_roulette(bench: &Bench, reference: &Film) {
+    let sobol = Settings {
+        sampler: "sobol".into(),
+        ..settings(256, 5)
+    };
+    // Its samples depend on each other, so that its film's variance is too large: never too strict.
+    bench.assert_agree("sobol", reference, &bench.render(&sobol));
+    // The longest path is shorter than roulette's usual first edge: here it starts at once.
+    let early = Settings {
+        overrides: vec![("ROULETTE_DEPTH".into(), 1.0)],
+        ..settings(256, 6)
+    };
+    let early = bench.render(&early);
+    bench.assert_agree("roulette", reference, &early);
+    let none = bench.render(&without_roulette(&settings(256, 7)));
+    bench.assert_agree("none against roulette", &early, &none);
+}
+
+/// The scene with no material smoother than [`ROUGH`].
+fn roughened(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    for material in &mut scene.materials {
+        material.roughness = material.roughness.max(ROUGH);
+    }
+    scene
+}
+
+/// The scene with lamps brighter than [`BRIGHT`] put out.
+fn dimmed(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    for material in &mut scene.materials {
+        if material.emissive.max_element() > BRIGHT {
+            material.emissive = glam::Vec3::ZERO;
+        }
+    }
+    scene
+}
+
+#[test]
+fn cornell_box() {
+    check("cornell_box");
+}
+
+#[test]
+fn furnace() {
+    check("furnace");
+}
+
+#[test]
+fn foliage() {
+    check("foliage");
+}
+
+#[test]
+fn many_lights() {
+    check("many_lights");
+}
+
+#[test]
+fn sphere_grid() {
+    check("sphere_grid");
+}
+
+#[test]
+fn veach_mis() {
+    check("veach_mis");
+}

@@ -1,0 +1,105 @@
+//! Scenes built in memory, their rendering, and statistics about their pictures.
+
+#![allow(dead_code, unused_imports)] // Each test file uses a part of it.
+
+pub mod builder;
+pub mod radiometry;
+pub mod statistics;
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use etendue::accel::BuildOptions;
+use etendue::gpu::Device;
+use etendue::render::{Film, GpuScene, Prepared, Renderer, Settings};
+use etendue::scene::{Scene, gltf};
+use etendue::shader::ShaderLibrary;
+
+pub use builder::{SceneBuilder, black, glossy, lambert, lamp, metal};
+pub use statistics::{Estimate, assert_exact, assert_radiance, estimate, estimate_region};
+
+/// The device of all tests of a file; a failure says how to get one.
+pub fn device() -> &'static Device {
+    static DEVICE: OnceLock<Device> = OnceLock::new();
+    DEVICE.get_or_init(|| match Device::open(None) {
+        Ok(device) => device,
+        Err(error) => panic!("these tests need a Vulkan device: {error}"),
+    })
+}
+
+/// Renders a scene and insists on what every film has to be: complete and finite.
+pub fn render(scene: &Scene, settings: &Settings) -> Film {
+    scene.validate().expect("the test's scene is valid");
+    let device = device();
+    let prepared =
+        Prepared::new(scene, settings.camera, &BuildOptions::default()).expect("a prepared scene");
+    let gpu_scene = GpuScene::upload(device, &prepared).expect("room on the device");
+    let library = ShaderLibrary::embedded();
+    let mut renderer = Renderer::new(device, &library, scene, &prepared, &gpu_scene, settings)
+        .expect("a compiled shader");
+    let flow = renderer
+        .render(&mut |_, _| ControlFlow::Continue(()))
+        .expect("a render that ends");
+    assert!(flow.is_continue());
+    let film = renderer.film().expect("a film");
+    let spp = settings.spp as u32;
+    assert_eq!(film.spp_range(), (spp, spp), "samples are missing");
+    assert_eq!(film.non_finite_samples(), 0);
+    film
+}
+
+/// Settings of a square picture. The independent sampler, since with it the film's variance is an
+/// unbiased estimate of the error.
+pub fn square(size: u32, spp: u64, max_depth: u32) -> Settings {
+    Settings {
+        width: size,
+        height: size,
+        spp,
+        max_depth,
+        sampler: "independent".into(),
+        ..Settings::default()
+    }
+}
+
+/// The same settings with another integrator.
+pub fn with_integrator(settings: &Settings, integrator: &str) -> Settings {
+    Settings {
+        integrator: integrator.into(),
+        ..settings.clone()
+    }
+}
+
+/// The same settings, paths never ended by roulette.
+pub fn without_roulette(settings: &Settings) -> Settings {
+    let mut settings = settings.clone();
+    let never = f64::from(u16::MAX);
+    settings.overrides.push(("ROULETTE_DEPTH".into(), never));
+    settings
+}
+
+/// Loads `scenes/NAME.gltf`.
+pub fn load(name: &str) -> Scene {
+    load_path(&root().join("scenes").join(format!("{name}.gltf")))
+}
+
+/// Loads a file.
+pub fn load_path(path: &std::path::Path) -> Scene {
+    match gltf::load(path, &gltf::LoadOptions::default()) {
+        Ok(scene) => scene,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// The project's folder.
+pub fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// How many times the usual samples to draw: 16 in a campaign (`ETENDUE_LONG=1`).
+pub fn effort() -> u64 {
+    match std::env::var("ETENDUE_LONG") {
+        Ok(value) if value != "0" => 16,
+        _ => 1,
+    }
+}
