@@ -1,13 +1,10 @@
 //! A prepared scene on a device.
 
 use super::error::RenderError;
-use super::paged::PagedBuffer;
+use super::paged::{FIRST_PAGED_BINDING, PagedBuffer};
 use super::prepared::Prepared;
 use super::textures::srgb_table;
 use crate::gpu::{Buffer, Device, GpuError};
-
-/// First binding of the paged buffers; those below are in `shaders/bindings.wgsl`.
-pub const FIRST_PAGED_BINDING: u32 = 16;
 
 /// The buffers of a scene.
 pub struct GpuScene {
@@ -83,7 +80,6 @@ fn fixed_buffers(device: &Device, scene: &Prepared) -> Result<Vec<(u32, Buffer)>
 }
 
 fn paged_buffers(device: &Device, scene: &Prepared) -> Result<Vec<PagedBuffer>, GpuError> {
-    let up = PagedBuffer::upload::<u32>;
     let environment = &scene.environment;
     let indices = scene.indices.as_flattened();
     // Indices are read only to find a vertex's attributes.
@@ -92,43 +88,15 @@ fn paged_buffers(device: &Device, scene: &Prepared) -> Result<Vec<PagedBuffer>, 
     } else {
         indices
     };
+    // In the order of LARGE_ARRAYS.
+    let words = PagedBuffer::upload::<u32>;
     Ok(vec![
-        PagedBuffer::upload(device, "nodes", "BvhNode", "load_node", &scene.bvh.nodes)?,
-        PagedBuffer::upload(
-            device,
-            "triangles",
-            "Triangle",
-            "load_triangle",
-            &scene.triangles,
-        )?,
-        up(device, "indices", "u32", "load_index", indices)?,
-        PagedBuffer::upload(
-            device,
-            "vertex_words",
-            "f32",
-            "load_vertex_word",
-            &scene.vertex_words,
-        )?,
-        up(
-            device,
-            "texel_words",
-            "u32",
-            "load_texel_word",
-            &scene.textures.words,
-        )?,
-        PagedBuffer::upload(
-            device,
-            "environment_texels",
-            "vec4f",
-            "load_environment_texel",
-            &environment.texels,
-        )?,
-        PagedBuffer::upload(
-            device,
-            "environment_alias",
-            "vec2u",
-            "load_environment_alias",
-            &environment.alias,
-        )?,
+        PagedBuffer::upload(device, 0, &scene.bvh.nodes)?,
+        PagedBuffer::upload(device, 1, &scene.triangles)?,
+        words(device, 2, indices)?,
+        PagedBuffer::upload(device, 3, &scene.vertex_words)?,
+        words(device, 4, &scene.textures.words)?,
+        PagedBuffer::upload(device, 5, &environment.texels)?,
+        PagedBuffer::upload(device, 6, &environment.alias)?,
     ])
 }

@@ -28,7 +28,7 @@ pub use environment::EnvironmentTable;
 pub use error::RenderError;
 pub use film::Film;
 pub use gpu_scene::GpuScene;
-pub use paged::paged_wgsl;
+pub use paged::large_arrays_wgsl;
 pub use prepared::Prepared;
 pub use renderer::{Progress, Renderer};
 pub use settings::Settings;

@@ -4,11 +4,34 @@ use bytemuck::Pod;
 
 use crate::gpu::{Buffer, Device, GpuError};
 
+/// First binding of the large arrays; those below are in `shaders/bindings.wgsl`.
+pub const FIRST_PAGED_BINDING: u32 = 16;
+
+/// Name, WGSL element type and accessor of each large array, in the order of their bindings.
+pub const LARGE_ARRAYS: [(&str, &str, &str); 7] = [
+    ("nodes", "BvhNode", "load_node"),
+    ("triangles", "Triangle", "load_triangle"),
+    ("indices", "u32", "load_index"),
+    ("vertex_words", "f32", "load_vertex_word"),
+    ("texel_words", "u32", "load_texel_word"),
+    ("environment_texels", "vec4f", "load_environment_texel"),
+    ("environment_alias", "vec2u", "load_environment_alias"),
+];
+
+/// The `buffers.wgsl` of a scene whose large arrays have `pages` pages each: for compiling without
+/// a scene.
+pub fn large_arrays_wgsl(pages: usize) -> String {
+    let paged = |(i, (name, element, accessor)): (usize, (&str, &str, &str))| {
+        let binding = FIRST_PAGED_BINDING + (i * pages) as u32;
+        paged_wgsl(name, element, accessor, pages, 20, binding)
+    };
+    LARGE_ARRAYS.into_iter().enumerate().map(paged).collect()
+}
+
 /// An array that shaders read through `accessor(index)`.
 pub struct PagedBuffer {
-    name: &'static str,
-    element: &'static str,
-    accessor: &'static str,
+    /// Index into [`LARGE_ARRAYS`].
+    array: usize,
     pages: Vec<Buffer>,
     /// A page holds 2^this elements.
     page_bits: u32,
@@ -16,14 +39,9 @@ pub struct PagedBuffer {
 }
 
 impl PagedBuffer {
-    /// Uploads `data`; elements of the WGSL type `element`, of the same size as `T`.
-    pub fn upload<T: Pod>(
-        device: &Device,
-        name: &'static str,
-        element: &'static str,
-        accessor: &'static str,
-        data: &[T],
-    ) -> Result<Self, GpuError> {
+    /// Uploads the data of one of [`LARGE_ARRAYS`]; `T` has the size of its element type.
+    pub fn upload<T: Pod>(device: &Device, array: usize, data: &[T]) -> Result<Self, GpuError> {
+        let (name, _, _) = LARGE_ARRAYS[array];
         let stride = size_of::<T>() as u64;
         let limit = device.info().max_storage_buffer_range;
         let page_bits = (limit / stride).max(1).ilog2().min(31);
@@ -38,9 +56,7 @@ impl PagedBuffer {
             pages
         };
         Ok(Self {
-            name,
-            element,
-            accessor,
+            array,
             pages,
             page_bits,
             bytes: stride * data.len() as u64,
@@ -59,11 +75,13 @@ impl PagedBuffer {
 
     /// The text that declares the pages from `first_binding` on, and the accessor.
     pub fn wgsl(&self, first_binding: u32) -> String {
+        let (name, element, accessor) = LARGE_ARRAYS[self.array];
+        let pages = self.pages.len();
         paged_wgsl(
-            self.name,
-            self.element,
-            self.accessor,
-            self.pages.len(),
+            name,
+            element,
+            accessor,
+            pages,
             self.page_bits,
             first_binding,
         )
@@ -71,7 +89,7 @@ impl PagedBuffer {
 }
 
 /// Bindings and accessor of an array of `pages` pages.
-pub fn paged_wgsl(
+fn paged_wgsl(
     name: &str,
     element: &str,
     accessor: &str,

@@ -268,8 +268,9 @@ impl<'a> Renderer<'a> {
         } else {
             self.device.info().subgroup_size.max(1)
         };
-        self.loop_limit
-            .map_or(u32::MAX, |limit| limit.saturating_sub(STEP_RESERVE) / DRIVER_STEPS / lanes)
+        self.loop_limit.map_or(u32::MAX, |limit| {
+            limit.saturating_sub(STEP_RESERVE) / DRIVER_STEPS / lanes
+        })
     }
 
     fn take_status(&self) -> Result<Status, RenderError> {

@@ -1,7 +1,7 @@
 //! The kernels that `etendue shaders check` and the tests compile, without any device or scene.
 
 use super::error::RenderError;
-use super::paged::paged_wgsl;
+use super::paged::large_arrays_wgsl;
 use super::program::{self, Constant, ENTRY_FILE, feature_constants, features_wgsl};
 use super::settings::Settings;
 use crate::scene::Features;
@@ -73,25 +73,8 @@ pub fn virtual_files(
 ) -> Result<VirtualFiles, RenderError> {
     let mut files = program::choice_files(library, settings)?;
     files.insert("features.wgsl".into(), features_wgsl(constants));
-    files.insert("buffers.wgsl".into(), buffers_wgsl(pages));
+    files.insert("buffers.wgsl".into(), large_arrays_wgsl(pages));
     Ok(files)
-}
-
-/// Large arrays of `pages` pages each.
-fn buffers_wgsl(pages: usize) -> String {
-    let arrays = [
-        ("nodes", "BvhNode", "load_node"),
-        ("triangles", "Triangle", "load_triangle"),
-        ("indices", "u32", "load_index"),
-        ("vertex_words", "f32", "load_vertex_word"),
-        ("texel_words", "u32", "load_texel_word"),
-        ("environment_texels", "vec4f", "load_environment_texel"),
-        ("environment_alias", "vec2u", "load_environment_alias"),
-    ];
-    let paged = |(i, (name, element, accessor)): (usize, (&str, &str, &str))| {
-        paged_wgsl(name, element, accessor, pages, 20, 16 + (i * pages) as u32)
-    };
-    arrays.into_iter().enumerate().map(paged).collect()
 }
 
 /// Every integrator with the default sampler and every sampler with the default integrator would

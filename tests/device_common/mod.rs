@@ -16,8 +16,8 @@ use std::sync::OnceLock;
 
 use bytemuck::Pod;
 use etendue::gpu::{BindingKind, Bound, Buffer, Device, Pipeline};
+use etendue::render::large_arrays_wgsl;
 use etendue::render::layout::layouts;
-use etendue::render::paged_wgsl;
 use etendue::render::program::{Constant, feature_constants, features_wgsl};
 use etendue::scene::Features;
 use etendue::shader::{
@@ -116,7 +116,7 @@ impl Setup {
         let mut files = VirtualFiles::from([
             ("kernel.wgsl".into(), text),
             ("features.wgsl".into(), features_wgsl(&constants)),
-            ("buffers.wgsl".into(), buffers_wgsl()),
+            ("buffers.wgsl".into(), large_arrays_wgsl(1)),
             ("sampler_choice.wgsl".into(), sampler),
             (
                 "integrator.wgsl".into(),
@@ -131,23 +131,6 @@ impl Setup {
         }
         Kernel::new(&library, &files, &format!("{name}, {entry}"), entry)
     }
-}
-
-/// One page a large array, numbered as `GpuScene` does.
-fn buffers_wgsl() -> String {
-    [
-        ("nodes", "BvhNode", "load_node"),
-        ("triangles", "Triangle", "load_triangle"),
-        ("indices", "u32", "load_index"),
-        ("vertex_words", "f32", "load_vertex_word"),
-        ("texel_words", "u32", "load_texel_word"),
-        ("environment_texels", "vec4f", "load_environment_texel"),
-        ("environment_alias", "vec2u", "load_environment_alias"),
-    ]
-    .iter()
-    .zip(NODES..)
-    .map(|((name, element, accessor), binding)| paged_wgsl(name, element, accessor, 1, 20, binding))
-    .collect()
 }
 
 /// Bindings of a render's kernel.
