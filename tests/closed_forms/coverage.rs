@@ -50,7 +50,7 @@ fn a_blended_surface_transmits_one_minus_alpha_to_shadow_rays() {
             }
         });
         let expected = reflected(4.0 * (1.0 - f64::from(alpha)).powi(layers));
-        for settings in integrators(&square(8, 4096, 2)) {
+        for settings in integrators(&square(16, 1024, 2)) {
             let film = render(&scene, &settings);
             let name = format!("{}, α {alpha} × {layers}", settings.integrator);
             assert_radiance(&name, &film, expected, 0.004);
@@ -64,7 +64,7 @@ fn a_blended_surface_dims_the_sky_and_lamps() {
         b.sky(1.0);
         b.quad(veil(0.25), DVec3::Y * 0.5, DVec3::X * 1e4, DVec3::Z * 1e4);
     });
-    for settings in integrators(&square(8, 4096, 2)) {
+    for settings in integrators(&square(16, 1024, 2)) {
         let film = render(&scene, &settings);
         assert_radiance(&settings.integrator, &film, 0.75 * super::RHO, 0.006);
     }
@@ -78,7 +78,7 @@ fn a_blended_lamp_emits_alpha_of_its_radiance() {
     glowing.alpha_mode = AlphaMode::Blend;
     let scene = receiver(|b| b.quad(glowing, DVec3::Y, DVec3::X, DVec3::Z));
     let expected = reflected(0.4 * 3.0 * std::f64::consts::PI * 0.554126);
-    for settings in integrators(&square(8, 4096, 2)) {
+    for settings in integrators(&square(16, 1024, 2)) {
         let film = render(&scene, &settings);
         assert_radiance(&settings.integrator, &film, expected, 0.006);
     }

@@ -60,7 +60,7 @@ fn the_back_of_a_lamp_is_dark() {
         })
     };
     let expected = reflected(3.0 * std::f64::consts::PI * 0.554126);
-    for settings in integrators(&square(8, 2048, 2)) {
+    for settings in integrators(&square(16, 512, 2)) {
         let name = &settings.integrator;
         let dark = render(&with_back(lamp(3.0)), &settings);
         assert_exact(name, &dark, [0.0; 3]);

@@ -125,5 +125,5 @@ fn lights_add_up() {
     });
     let points: f64 = places.iter().map(|(d, t)| 4.0 * t.cos() / (d * d)).sum();
     let expected = reflected(points + 2.0 * (PI / 4.0).cos());
-    assert_radiance("sum", &receive(&scene, 2048), expected, 0.005);
+    assert_radiance("sum", &receive(&scene, 512), expected, 0.005);
 }

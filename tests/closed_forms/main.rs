@@ -39,9 +39,9 @@ fn receiver(add: impl FnOnce(&mut SceneBuilder)) -> Scene {
     builder.scene
 }
 
-/// Radiance that the receiver reflects, paths of two edges; `spp` samples in each of 64 pixels.
+/// Radiance that the receiver reflects, paths of two edges; `spp` samples in each of 256 pixels.
 fn receive(scene: &Scene, spp: u64) -> Film {
-    render(scene, &square(8, spp, 2))
+    render(scene, &square(16, spp, 2))
 }
 
 /// Radiance of a receiver of irradiance `e`.

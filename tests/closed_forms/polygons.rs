@@ -42,7 +42,7 @@ fn polygons_above_the_horizon_follow_lambert() {
     ] {
         let (scene, e) = under_polygon(&regular(sides, center, tilt));
         let name = format!("{sides} sides at {center}");
-        assert_radiance(&name, &receive(&scene, 2048), reflected(e), 0.005);
+        assert_radiance(&name, &receive(&scene, 512), reflected(e), 0.005);
     }
 }
 
@@ -55,7 +55,7 @@ fn the_part_below_the_horizon_gives_nothing() {
     ] {
         let (scene, e) = under_polygon(&regular(sides, center, 0.2));
         let name = format!("{sides} sides at {center}");
-        assert_radiance(&name, &receive(&scene, 4096), reflected(e), 0.006);
+        assert_radiance(&name, &receive(&scene, 1024), reflected(e), 0.006);
     }
     let (scene, e) = under_polygon(&regular(5, DVec3::new(0.2, -1.5, 0.0), 0.0));
     assert_eq!(e, 0.0);
@@ -65,7 +65,7 @@ fn the_part_below_the_horizon_gives_nothing() {
 #[test]
 fn every_integrator_meets_lamberts_formula() {
     let (scene, e) = under_polygon(&regular(5, DVec3::new(0.4, 1.0, 0.2), 0.3));
-    for settings in integrators(&square(8, 2048, 2)) {
+    for settings in integrators(&square(16, 512, 2)) {
         let film = render(&scene, &settings);
         assert_radiance(&settings.integrator, &film, reflected(e), 0.006);
     }
@@ -78,7 +78,7 @@ fn a_square_on_the_axis() {
     let (scene, e) = under_polygon(&corners.map(|(x, z)| DVec3::new(x, 1.0, z)));
     let table = PI * RADIANCE * 0.554126;
     assert!((e - table).abs() < 1e-5 * e, "{e} {table}");
-    assert_radiance("square", &receive(&scene, 2048), reflected(e), 0.005);
+    assert_radiance("square", &receive(&scene, 512), reflected(e), 0.005);
 }
 
 /// E = πL r² / (r² + h²) of a disc; its polygon of 96 sides has 1 − 7e-4 of its area.
@@ -95,7 +95,7 @@ fn a_coaxial_disc() {
         let round = PI * RADIANCE * radius * radius / (radius * radius + height * height);
         assert!((e / round - 1.0).abs() < 8e-4, "{e} {round}");
         let name = format!("radius {radius}");
-        assert_radiance(&name, &receive(&scene, 2048), reflected(e), 0.005);
+        assert_radiance(&name, &receive(&scene, 512), reflected(e), 0.005);
     }
 }
 
@@ -112,7 +112,7 @@ fn a_sphere_above_the_horizon() {
         assert!((e / round - 1.0).abs() < 6e-3, "{e} {round}");
         let scene = receiver(|b| b.sphere(lamp(RADIANCE as f32), &sphere, false));
         let name = format!("radius {radius}, {theta} rad");
-        assert_radiance(&name, &receive(&scene, 4096), reflected(e), 0.006);
+        assert_radiance(&name, &receive(&scene, 1024), reflected(e), 0.006);
     }
 }
 
@@ -157,7 +157,7 @@ fn turning_everything_changes_nothing() {
             instance.to_world = turn;
         }
         turned.cameras[0].to_world = turn * turned.cameras[0].to_world;
-        let film = receive(&turned, 2048);
+        let film = receive(&turned, 512);
         assert_radiance(&format!("{axis} {angle}"), &film, reflected(e), 0.005);
     }
 }

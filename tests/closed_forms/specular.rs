@@ -49,7 +49,7 @@ fn a_mirror_reflects_f_times_l() {
                 assert_exact(&name, &render(&scene, &settings), [expected; 3]);
             }
             // The naive estimator follows the mirror half of the time.
-            let settings = with_integrator(&square(8, 1024, 2), "naive");
+            let settings = with_integrator(&square(16, 256, 2), "naive");
             assert_radiance("naive", &render(&scene, &settings), expected, 0.006);
         }
     }
@@ -66,7 +66,7 @@ fn the_mirror_is_the_limit_of_rough_metals() {
         let expected = 5.0 * schlick(0.6, 1.0, theta.cos());
         for roughness in [0.0, 0.02, 0.04, 0.06] {
             let scene = with_mirrored_lamp(metal(0.6, roughness), theta, half);
-            let e = estimate(&render(&scene, &square(8, 512, 2)));
+            let e = estimate(&render(&scene, &square(16, 128, 2)));
             println!("{roughness} {theta}: {e:?}, expected {expected}");
             let alpha = f64::from(roughness).powi(2);
             let tail = 2.0 * (alpha / 5.0_f64.to_radians().tan()).powi(2) + 1e-5;
@@ -83,7 +83,7 @@ fn a_mirror_in_a_uniform_sky_is_uniform() {
     for roughness in [0.0, 0.04] {
         for theta in [0.2_f64, 1.0] {
             let scene = under_sky(metal(0.6, roughness), theta);
-            let film = render(&scene, &square(8, 256, 2));
+            let film = render(&scene, &square(16, 64, 2));
             let alpha = f64::from(roughness).powi(2);
             let expected = ggx_albedo(alpha.max(1e-6), 0.6_f32.into(), theta.cos());
             let name = format!("roughness {roughness}, {theta} rad");
@@ -158,7 +158,7 @@ fn the_base_gets_what_the_layer_lets_through() {
         },
         theta,
     );
-    let film = render(&scene, &square(8, 4096, 2));
+    let film = render(&scene, &square(16, 1024, 2));
     let wo = DVec3::new(theta.sin(), theta.cos(), 0.0);
     let through = |wi: DVec3| 1.0 - schlick(0.04, 1.0, wi.dot((wo + wi).normalize()));
     let base = super::scene_common::radiometry::sky_irradiance(through, DVec3::Y);
@@ -183,7 +183,7 @@ fn a_white_metal_keeps_what_single_scattering_keeps() {
         let expected = ggx_albedo(alpha, 1.0, mu);
         assert!((expected - table).abs() < 2e-3, "{alpha} {mu}: {expected}");
         let scene = under_sky(metal(1.0, alpha.sqrt() as f32), mu.acos());
-        let film = render(&scene, &square(8, 512, 2));
+        let film = render(&scene, &square(16, 128, 2));
         assert_radiance(&format!("α {alpha}, µ {mu}"), &film, expected, 0.005);
     }
 }
@@ -192,7 +192,7 @@ fn a_white_metal_keeps_what_single_scattering_keeps() {
 fn a_rough_metal_follows_its_fresnel_term() {
     let scene = under_sky(metal(0.3, 0.7), 1.2);
     let expected = ggx_albedo(f64::from(0.7_f32).powi(2), 0.3_f32.into(), 1.2_f64.cos());
-    for settings in super::integrators(&square(8, 2048, 2)) {
+    for settings in super::integrators(&square(16, 512, 2)) {
         let film = render(&scene, &settings);
         assert_radiance(&settings.integrator, &film, expected, 0.006);
     }
