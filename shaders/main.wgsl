@@ -32,7 +32,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         var random = sampler_begin(position, sample_index, frame.seed);
         reset_ray_counts();
         let L = Li(camera_ray(position, next_2d(&random)), &random);
-        if (out_of_steps()) {
+        if (out_of_steps() || loops_are_cut()) {
             break;
         }
         note_sample_steps(steps_before);

@@ -63,11 +63,14 @@ fn path_Li(camera_ray: Ray, sampler: ptr<function, Sampler>, max_depth: u32, lig
             break;
         }
         beta *= sample.weight;
+        if (all(beta == vec3f(0.0))) {
+            break;
+        }
         last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta);
         ray = spawn_ray(surface, wi);
         // End paths that carry little, and make the survivors carry their share.
         if (depth >= ROULETTE_DEPTH) {
-            let survival = min(max_component(beta), ROULETTE_MAX_SURVIVAL);
+            let survival = min(min(max_component(beta), 1.0), ROULETTE_MAX_SURVIVAL);
             if (choice.y >= survival) {
                 break;
             }

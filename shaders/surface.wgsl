@@ -117,7 +117,9 @@ fn orient(s: ptr<function, Surface>, shading_normal: vec3f) {
     (*s).normal *= side;
     var n = (*s).normal;
     if (HAS_NORMALS || HAS_NORMAL_TEXTURE) {
-        n = reflecting_normal(n, shading_normal * side, (*s).wo);
+        // Normals that oppose the winding, a common mistake of exporters, are turned.
+        let towards = shading_normal * side;
+        n = reflecting_normal(n, select(towards, -towards, dot(towards, n) < 0.0), (*s).wo);
     }
     (*s).shading = frame_from_z(n);
 }

@@ -41,11 +41,12 @@ fn fold_coordinate(wrap: u32, u: f32) -> f32 {
 
 fn wrap_index(wrap: u32, index: i32, size: i32) -> i32 {
     if (wrap == 2u) {
-        return index - size * i32(floor((f32(index) + 0.5) / f32(size)));
+        // Clamped, since coordinates may be infinite, and sides beyond 2^24 round.
+        return clamp(index - size * i32(floor((f32(index) + 0.5) / f32(size))), 0, size - 1);
     }
     if (wrap == 1u) {
         let period = index - 2 * size * i32(floor((f32(index) + 0.5) / f32(2 * size)));
-        return select(period, 2 * size - 1 - period, period >= size);
+        return clamp(select(period, 2 * size - 1 - period, period >= size), 0, size - 1);
     }
     return clamp(index, 0, size - 1);
 }

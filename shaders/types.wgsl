@@ -173,8 +173,8 @@ struct PunctualLight {
     inverse_range: f32,
     // W/sr, or W/m^2 if directional.
     intensity: vec3f,
-    // Cosine of the outer cone angle.
-    cos_outer: f32,
+    // 1 - cos(outer cone angle): cosines of narrow cones would cancel.
+    versine_outer: f32,
     // 1 / (cos(inner) - cos(outer)).
     spot_scale: f32,
     pad0: u32,

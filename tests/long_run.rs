@@ -7,7 +7,7 @@ mod scene_common;
 use std::ops::ControlFlow;
 
 use etendue::accel::BuildOptions;
-use etendue::render::{Film, GpuScene, Prepared, Renderer, Settings};
+use etendue::render::{Film, GpuScene, Prepared, RenderError, Renderer, Settings};
 use etendue::scene::{Material, Scene};
 use etendue::shader::ShaderLibrary;
 use glam::{DVec3, Vec3};
@@ -81,11 +81,15 @@ fn many_short_runs_are_one_long_run() {
     }
 }
 
-/// A picture of 4×4 pixels: a pass is sized to last, so that each lane gets thousands of samples
+/// Passes of 8,192 samples a pixel: each lane gets thousands of samples
 /// and far more than 65,535 iterations before its pixel is done.
 #[test]
 fn a_pass_of_thousands_of_samples_is_complete() {
-    let (scene, settings) = (furnace(0.5), square(4, 16_384 * effort(), 8));
+    let scene = furnace(0.5);
+    let settings = Settings {
+        pass_samples: Some(8192),
+        ..square(4, 16_384 * effort(), 8)
+    };
     let (film, largest) = render_with_largest_pass(&scene, &settings);
     // An edge takes at least one iteration of the path loop and two of the traversals.
     let iterations = largest / 16.0 * 8.0 * 3.0;
@@ -127,8 +131,32 @@ fn paths_of_256_edges_end_where_they_should() {
 
 /// A single path takes more iterations than the lanes of a SIMD group may share.
 #[test]
-fn paths_of_3000_edges_end_where_they_should() {
-    let settings = without_roulette(&square(4, 16 * effort(), 3000));
+fn paths_of_1500_edges_end_where_they_should() {
+    let settings = without_roulette(&square(4, 16 * effort(), 1500));
     let film = render(&furnace(0.95), &settings);
-    assert_radiance("3000 edges", &film, answer(0.95, 3000), 0.05);
+    assert_radiance("1500 edges", &film, answer(0.95, 1500), 0.05);
+}
+
+/// A path of 10,000 edges takes more iterations than an old driver lets a SIMD group run: it is
+/// rendered whole or refused, never cut.
+#[test]
+fn overlong_paths_are_whole_or_refused() {
+    let scene = furnace(1.0);
+    let settings = Settings {
+        integrator: "path_bsdf".into(),
+        ..without_roulette(&square(8, 1, 10_000))
+    };
+    let prepared = Prepared::new(&scene, 0, &BuildOptions::default()).expect("a prepared scene");
+    let gpu_scene = GpuScene::upload(device(), &prepared).expect("room on the device");
+    let library = ShaderLibrary::embedded();
+    let mut renderer = Renderer::new(device(), &library, &scene, &prepared, &gpu_scene, &settings)
+        .expect("a compiled shader");
+    match renderer.render(&mut |_, _| ControlFlow::Continue(())) {
+        Ok(_) => {
+            let mean = renderer.film().expect("a film").mean_radiance()[0];
+            assert!((mean - 10_000.0).abs() < 100.0, "paths were cut: {mean}");
+        }
+        Err(RenderError::LoopLimit { .. }) => {}
+        Err(other) => panic!("{other}"),
+    }
 }

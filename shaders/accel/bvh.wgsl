@@ -1,8 +1,8 @@
 // Traversal of the bounding volume hierarchy. Twin of src/accel/traverse.rs, operation for
 // operation; the bounds on its rounding errors are there.
 //
-// Expects: BvhNode, Triangle, Ray (types.wgsl); const STACK_SIZE (Bvh::depth, at least 1),
-// const HAS_ALPHA, HAS_CULLING; fn load_node(i: u32) -> BvhNode; fn load_triangle(i: u32) -> Triangle,
+// Expects: BvhNode, Triangle (types.wgsl); const STACK_SIZE (Bvh::depth, at least 1),
+// const HAS_ALPHA, HAS_SINGLE_SIDED; fn load_node(i: u32) -> BvhNode; fn load_triangle(i: u32) -> Triangle,
 // in the tree's order; fn count_step(), called once a loop iteration; and
 //
 //   fn accept_hit(triangle: Triangle, triangle_index: u32, b: vec3f, back_face: bool,

@@ -79,7 +79,7 @@ fn environment_lookup(uv: vec2f) -> vec3f {
     let height = i32(frame.environment_height);
     let q = uv * vec2f(f32(width), f32(height)) - 0.5;
     let f = q - floor(q);
-    let x0 = (i32(floor(q.x)) + width) % width;
+    let x0 = clamp((i32(floor(q.x)) + width) % width, 0, width - 1);
     let x1 = (x0 + 1) % width;
     let y0 = clamp(i32(floor(q.y)), 0, height - 1);
     let y1 = clamp(i32(floor(q.y)) + 1, 0, height - 1);

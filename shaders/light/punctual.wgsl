@@ -21,7 +21,7 @@ fn punctual_sample(s: Surface, index: u32) -> LightSample {
     // The normal is null: the shadow ray ends at the light itself.
     var attenuation = range_window(distance * light.inverse_range);
     if (light.kind == PUNCTUAL_SPOT) {
-        attenuation *= spot_window(light, -dot(sample.wi, light.direction));
+        attenuation *= spot_window(light, -sample.wi);
     }
     sample.weight = (light.intensity / distance) / distance * attenuation;
     return sample;
@@ -34,6 +34,8 @@ fn range_window(relative_distance: f32) -> f32 {
 }
 
 // The extension's recommended fall-off between the inner and the outer cone.
-fn spot_window(light: PunctualLight, cos_axis: f32) -> f32 {
-    return square(clamp((cos_axis - light.cos_outer) * light.spot_scale, 0.0, 1.0));
+fn spot_window(light: PunctualLight, away: vec3f) -> f32 {
+    // 1 - cos of the angle to the axis is half the squared distance of the unit vectors.
+    let d = away - light.direction;
+    return square(clamp((light.versine_outer - 0.5 * dot(d, d)) * light.spot_scale, 0.0, 1.0));
 }

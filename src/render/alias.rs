@@ -33,7 +33,7 @@ pub fn alias_table(weights: &[f64]) -> Option<Vec<AliasEntry>> {
     let (mut small, mut large): (Vec<usize>, Vec<usize>) =
         (0..weights.len()).partition(|&i| scaled[i] < 1.0);
     while let (Some(poor), Some(&rich)) = (small.pop(), large.last()) {
-        entries[poor].threshold = scaled[poor] as f32;
+        entries[poor].threshold = representable(scaled[poor]);
         entries[poor].alias = rich as u32;
         scaled[rich] -= 1.0 - scaled[poor];
         if scaled[rich] < 1.0 {
@@ -50,7 +50,26 @@ pub fn alias_table(weights: &[f64]) -> Option<Vec<AliasEntry>> {
             entries[i].alias = heaviest as u32;
         }
     }
+    set_probabilities(&mut entries);
     Some(entries)
+}
+
+/// The shader compares with multiples of 2⁻²⁴: a threshold between two of them acts as the upper.
+fn representable(threshold: f64) -> f32 {
+    ((threshold * 16_777_216.0).ceil() / 16_777_216.0) as f32
+}
+
+/// Stores the probabilities that the thresholds realise, rather than those that were asked for.
+fn set_probabilities(entries: &mut [AliasEntry]) {
+    let mut columns = vec![0.0_f64; entries.len()];
+    for (i, entry) in entries.iter().enumerate() {
+        columns[i] += f64::from(entry.threshold);
+        columns[entry.alias as usize] += 1.0 - f64::from(entry.threshold);
+    }
+    let count = entries.len() as f64;
+    for (entry, sum) in entries.iter_mut().zip(columns) {
+        entry.probability = (sum / count) as f32;
+    }
 }
 
 fn heaviest(weights: &[f64]) -> Option<usize> {
@@ -79,7 +98,7 @@ mod tests {
         let table = alias_table(&weights).expect("positive weights");
         for (i, p) in realised(&table).iter().enumerate() {
             assert!((p - weights[i] / total).abs() < 1e-9, "item {i}");
-            assert!((f64::from(table[i].probability) - weights[i] / total).abs() < 1e-9);
+            assert!((f64::from(table[i].probability) - p).abs() < 1e-9);
         }
     }
 

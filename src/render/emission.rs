@@ -17,6 +17,11 @@ pub fn triangle_power(
     corners: &[Vec3; 3],
     tex_coords: impl Fn(u32) -> [Vec2; 3],
 ) -> f64 {
+    // Too small for the shader's own cross product: it finds no normal there.
+    let [a, b, c] = corners;
+    if (b - a).cross(*c - *a) == Vec3::ZERO {
+        return 0.0;
+    }
     let [a, b, c] = corners.map(|v| v.as_dvec3());
     let area = 0.5 * (b - a).cross(c - a).length();
     let faces = if material.double_sided { 2.0 } else { 1.0 };

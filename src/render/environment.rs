@@ -50,7 +50,7 @@ fn luminance([r, g, b]: [f32; 3]) -> f64 {
     0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
 }
 
-/// Solid angle of a texel in a row, steradians, by the mid-point rule that the shader's density has.
+/// Sine of the polar angle in the middle of a row, to which the solid angle of its texels is proportional.
 fn sin_theta(row: usize, height: usize) -> f64 {
     (std::f64::consts::PI * (row as f64 + 0.5) / height as f64).sin()
 }

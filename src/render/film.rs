@@ -38,6 +38,11 @@ impl Film {
         let mean = self.mean(pixel);
         std::array::from_fn(|c| {
             let square = (f64::from(p.square[c]) + f64::from(p.square_low[c])) / n;
+            // Squares of radiances beyond 1e±19 leave f32's range and say nothing.
+            let lost = square <= f64::from(f32::MIN_POSITIVE) && mean[c] != 0.0;
+            if lost || !square.is_finite() {
+                return f64::INFINITY;
+            }
             ((square - mean[c] * mean[c]) / (n - 1.0)).max(0.0)
         })
     }

@@ -62,7 +62,7 @@ impl GpuScene {
         text
     }
 
-    /// Bytes of data by buffer.
+    /// Bytes of all data.
     pub fn bytes(&self) -> u64 {
         let fixed: u64 = self.fixed.iter().map(|(_, b)| b.bytes()).sum();
         fixed + self.paged.iter().map(PagedBuffer::bytes).sum::<u64>()

@@ -296,8 +296,8 @@ shared_struct! {
         inverse_range: f32,
         /// W·sr⁻¹ or W·m⁻².
         intensity: [f32; 3],
-        /// Of the outer cone.
-        cos_outer: f32,
+        /// 1 − cos of the outer cone angle.
+        versine_outer: f32,
         /// 1 / (cos inner − cos outer).
         spot_scale: f32,
         /// Unused.

@@ -80,19 +80,22 @@ fn punctual_power(light: &PunctualLight, scene_radius: f64) -> f64 {
     let intensity = luminance(light.intensity.as_dvec3());
     match light.kind {
         LightKind::Point => 4.0 * pi * intensity,
-        LightKind::Spot { inner, outer } => {
-            2.0 * pi * intensity * (1.0 - 0.5 * (inner.cos() + outer.cos()))
-        }
+        LightKind::Spot { inner, outer } => pi * intensity * (versine(inner) + versine(outer)),
         LightKind::Directional => pi * scene_radius * scene_radius * intensity,
     }
 }
 
+/// 1 − cos, without its cancellation for narrow cones.
+fn versine(angle: f64) -> f64 {
+    2.0 * (0.5 * angle).sin().powi(2)
+}
+
 /// The device's form of a punctual light, relative to `origin`.
 pub fn punctual(light: &PunctualLight, origin: DVec3) -> layout::PunctualLight {
-    let (kind, cos_inner, cos_outer) = match light.kind {
-        LightKind::Point => (0, 1.0, 0.0),
-        LightKind::Spot { inner, outer } => (1, inner.cos(), outer.cos()),
-        LightKind::Directional => (2, 1.0, 0.0),
+    let (kind, inner, outer) = match light.kind {
+        LightKind::Point => (0, 0.0, 1.0),
+        LightKind::Spot { inner, outer } => (1, versine(inner), versine(outer)),
+        LightKind::Directional => (2, 0.0, 1.0),
     };
     layout::PunctualLight {
         position: (light.position - origin).as_vec3().to_array(),
@@ -104,8 +107,8 @@ pub fn punctual(light: &PunctualLight, origin: DVec3) -> layout::PunctualLight {
             0.0
         },
         intensity: light.intensity.to_array(),
-        cos_outer: cos_outer as f32,
-        spot_scale: (1.0 / (cos_inner - cos_outer)).min(f64::from(f32::MAX)) as f32,
+        versine_outer: outer as f32,
+        spot_scale: (1.0 / (outer - inner)).min(f64::from(f32::MAX)) as f32,
         ..Default::default()
     }
 }

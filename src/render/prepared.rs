@@ -12,7 +12,7 @@ use super::materials::materials;
 use super::textures::TextureSet;
 use super::vertex_format::{VertexFormat, VertexNeeds};
 use crate::accel::{BuildOptions, Bvh};
-use crate::scene::{Features, Scene};
+use crate::scene::{Features, LightKind, PunctualLight, Scene};
 
 /// Most triangles that the BVH can count.
 const MAX_TRIANGLES: u64 = crate::accel::MAX_TRIANGLES as u64;
@@ -74,20 +74,21 @@ impl Prepared {
         let environment = environment_table(scene);
         let mut lights = LightList::default();
         let triangle_lights = add_triangle_lights(&mut lights, scene, &flat, &vertex_format);
-        let environment_light = add_other_lights(&mut lights, scene, &flat, &environment);
+        let (near, lost) = punctual_lights(scene, origin);
+        let environment_light = add_other_lights(&mut lights, scene, &near, &flat, &environment);
         Ok(Self {
             features,
             origin,
             bvh,
             triangles: device_triangles(&flat, &triangle_lights),
-            warnings: dropped_warning(flat.dropped),
+            warnings: warnings(flat.dropped, lost),
             indices: flat.indices,
             vertex_words: flat.words,
             vertex_format,
             materials,
             textures,
             lights: lights.table(),
-            punctual: scene.lights.iter().map(|l| punctual(l, origin)).collect(),
+            punctual: near.iter().map(|l| punctual(l, origin)).collect(),
             environment,
             environment_light,
         })
@@ -114,6 +115,9 @@ fn check_counts(scene: &Scene) -> Result<(), RenderError> {
         .iter()
         .map(|i| u64::from(i.width) * u64::from(i.height))
         .sum();
+    let sky = scene.environment.as_ref().and_then(|e| e.image.as_ref());
+    let sky_texels = sky.map_or(0, |image| image.texels.len() as u64);
+    check("texels of the environment", sky_texels, 1 << 30)?;
     // An image is held at most twice, in at most two words a texel.
     check("texels", texels, u64::from(u32::MAX) / 4)
 }
@@ -159,19 +163,31 @@ fn tex_coord(flat: &FlatGeometry, format: &VertexFormat, vertex: u32, set: u32) 
     })
 }
 
+/// The punctual lights that shine, and the number of those too far away for f32.
+fn punctual_lights(scene: &Scene, origin: DVec3) -> (Vec<&PunctualLight>, u64) {
+    let reachable = |light: &PunctualLight| {
+        light.kind == LightKind::Directional || (light.position - origin).as_vec3().is_finite()
+    };
+    let shining = scene
+        .lights
+        .iter()
+        .filter(|light| light.intensity.max_element() > 0.0);
+    let (near, far): (Vec<_>, Vec<_>) = shining.partition(|light| reachable(light));
+    (near, far.len() as u64)
+}
+
 /// Enters punctual lights and the environment; gives the index of the latter, or [`NONE`].
 fn add_other_lights(
     lights: &mut LightList,
     scene: &Scene,
+    punctual: &[&PunctualLight],
     flat: &FlatGeometry,
     table: &EnvironmentTable,
 ) -> u32 {
     // In a scene without extent any radius will do.
     let radius = flat.radius().max(f64::MIN_POSITIVE);
-    for (i, light) in scene.lights.iter().enumerate() {
-        if light.intensity.max_element() > 0.0 {
-            lights.add_punctual(i as u32, light, radius);
-        }
+    for (i, light) in punctual.iter().enumerate() {
+        lights.add_punctual(i as u32, light, radius);
     }
     let Some(environment) = &scene.environment else {
         return NONE;
@@ -203,11 +219,17 @@ fn device_triangles(flat: &FlatGeometry, lights: &[u32]) -> Vec<layout::Triangle
         .collect()
 }
 
-fn dropped_warning(dropped: u64) -> Vec<String> {
-    if dropped == 0 {
-        return Vec::new();
+fn warnings(dropped: u64, lost_lights: u64) -> Vec<String> {
+    let mut list = Vec::new();
+    if dropped > 0 {
+        list.push(format!(
+            "{dropped} triangles have a vertex that is not a finite number and were left out"
+        ));
     }
-    vec![format!(
-        "{dropped} triangles have a vertex that is not a finite number and were left out"
-    )]
+    if lost_lights > 0 {
+        list.push(format!(
+            "{lost_lights} punctual lights are farther away than numbers reach and were left out"
+        ));
+    }
+    list
 }

@@ -20,10 +20,6 @@ use crate::shader::{self, Diagnostic, OverrideInfo, ShaderLibrary};
 const PIECE: Duration = Duration::from_millis(100);
 /// Wall time after which all pixels should have got their next samples.
 const PASS: Duration = Duration::from_millis(500);
-/// Iterations of the driver's count that one counted step may stand for: its own, the one in which
-/// its loop is left (the driver counts N + 1 for N iterations), and one for an inner loop that runs
-/// no iteration.
-const DRIVER_STEPS: u32 = 3;
 /// Loop iterations that are kept back from a driver's limit, for those that no shader counts.
 const STEP_RESERVE: u32 = 256;
 /// Lanes of a tile and of a workgroup.
@@ -260,17 +256,17 @@ impl<'a> Renderer<'a> {
         }
     }
 
-    /// Iterations that a lane may make so that the lanes of a SIMD group, should each go its own
-    /// way, stay below the driver's limit together.
+    /// Iterations after which a lane stops drawing samples, so that the lanes of a SIMD group, should
+    /// each go its own way, seldom meet the driver's limit together. It saves work only: the kernel
+    /// notices when the limit was met, and gives up the sample.
     fn step_limit(&self, lane_stride: u32) -> u32 {
         let lanes = if lane_stride > 1 {
             1
         } else {
             self.device.info().subgroup_size.max(1)
         };
-        self.loop_limit.map_or(u32::MAX, |limit| {
-            limit.saturating_sub(STEP_RESERVE) / DRIVER_STEPS / lanes
-        })
+        self.loop_limit
+            .map_or(u32::MAX, |limit| limit.saturating_sub(STEP_RESERVE) / lanes)
     }
 
     fn take_status(&self) -> Result<Status, RenderError> {
@@ -289,7 +285,9 @@ impl<'a> Renderer<'a> {
     /// Samples a pixel in the next pass over the picture.
     fn pass_samples(&self) -> u64 {
         let pixels = f64::from(self.settings.width) * f64::from(self.settings.height);
-        let fitting = (self.rate * PASS.as_secs_f64() / pixels) as u64;
+        // A small picture is a single piece.
+        let pieces = (pixels / f64::from(16 * TILE_LANES)).clamp(1.0, PASS.div_duration_f64(PIECE));
+        let fitting = (self.rate * PIECE.as_secs_f64() * pieces / pixels) as u64;
         let fitting = self.settings.pass_samples.unwrap_or(fitting);
         fitting.clamp(1, self.settings.spp - self.spp_done)
     }
@@ -306,7 +304,9 @@ impl<'a> Renderer<'a> {
             None if self.rate == 0.0 => 16,
             None => (fitting as u64 / u64::from(TILE_LANES)).max(2),
         };
-        (tiles * u64::from(TILE_LANES)).min(most.max(u64::from(TILE_LANES))) as u32
+        (tiles * u64::from(TILE_LANES))
+            .min(most.max(u64::from(TILE_LANES)))
+            .min(u64::from(u32::MAX / TILE_LANES * TILE_LANES)) as u32
     }
 
     fn account(&mut self, band: usize, first: u32, count: u32, samples: u64, time: Duration) {
