@@ -141,7 +141,8 @@ fn ulps(a: f32, b: f32) -> i64 {
 fn agree(device: &Option<Hit>, host: &Option<Hit>, exact: bool) -> bool {
     match (device, host) {
         (Some(d), Some(h)) if !exact => {
-            ulps(d.t, h.t) <= ULPS && (0..3).all(|i| (d.b[i] - h.b[i]).abs() < 1e-5)
+            let same_place = (0..3).all(|i| (d.b[i] - h.b[i]).abs() < 1e-5);
+            d.triangle == h.triangle && ulps(d.t, h.t) <= ULPS && same_place
         }
         _ => device == host,
     }
