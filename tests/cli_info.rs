@@ -81,7 +81,7 @@ fn without_a_driver_it_says_how_to_get_one() {
         &["devices"][..],
         &["render", "scenes/furnace.gltf", "--json", "-"],
     ] {
-        let mut command = cli_support::command(arguments);
+        let mut command = cli_support::plain_command(arguments);
         let command = command
             .env("VK_ICD_FILENAMES", "/nonexistent.json")
             .env("VK_DRIVER_FILES", "/nonexistent.json");

@@ -56,9 +56,25 @@ impl Run {
     }
 }
 
-/// The program with arguments, its streams in pipes.
+/// The program with arguments, its streams in pipes. A private driver may need a program of its own
+/// to start others with (`tools/lavapipe`).
 pub fn command<S: AsRef<OsStr>>(arguments: &[S]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_etendue"));
+    match std::env::var_os("ETENDUE_RUNNER").filter(|r| !r.is_empty()) {
+        Some(runner) => {
+            let mut command = Command::new(runner);
+            command.arg(env!("CARGO_BIN_EXE_etendue"));
+            piped(command, arguments)
+        }
+        None => plain_command(arguments),
+    }
+}
+
+/// The program with arguments, started as it is, whatever driver there may be.
+pub fn plain_command<S: AsRef<OsStr>>(arguments: &[S]) -> Command {
+    piped(Command::new(env!("CARGO_BIN_EXE_etendue")), arguments)
+}
+
+fn piped<S: AsRef<OsStr>>(mut command: Command, arguments: &[S]) -> Command {
     command
         .args(arguments)
         .current_dir(env!("CARGO_MANIFEST_DIR"))
