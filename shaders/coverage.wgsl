@@ -12,10 +12,7 @@ fn coverage(triangle: Triangle, index: u32, b: vec3f) -> f32 {
     }
     var alpha = materials[triangle.material].base_color.a;
     if (HAS_COLORS) {
-        let i0 = load_index(3u * index) * VERTEX_STRIDE + COLOR_OFFSET;
-        let i1 = load_index(3u * index + 1u) * VERTEX_STRIDE + COLOR_OFFSET;
-        let i2 = load_index(3u * index + 2u) * VERTEX_STRIDE + COLOR_OFFSET;
-        alpha *= interpolate_vec4(i0, i1, i2, b).a;
+        alpha *= interpolate_vec4(vertex_words(index) + COLOR_OFFSET, b).a;
     }
     let slot = materials[triangle.material].base_color_texture;
     if (HAS_BASE_COLOR_TEXTURE && slot.texture != NONE) {

@@ -125,8 +125,3 @@ fn environment_hit_weight(direction: vec3f, last: LastBounce, light_samples: boo
     let choice = lights[frame.environment_light].probability;
     return power_heuristic(last.pdf, choice * environment_pdf(last.normal, direction));
 }
-
-// Seed for the coverage of blended surfaces along a ray.
-fn ray_seed(sampler: Sampler) -> u32 {
-    return hash2(vec2u(sampler.key ^ sampler.index, sampler.dimension));
-}

@@ -34,6 +34,11 @@ fn next_2d(s: ptr<function, Sampler>) -> vec2f {
     return vec2f(unit_float(bits.x), unit_float(bits.y));
 }
 
+// Seed for the coverage of blended surfaces along a ray.
+fn ray_seed(sampler: Sampler) -> u32 {
+    return hash2(vec2u(sampler.key ^ sampler.index, sampler.dimension));
+}
+
 fn next_1d(s: ptr<function, Sampler>) -> f32 {
     return next_2d(s).x;
 }

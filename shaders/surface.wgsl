@@ -87,18 +87,15 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, index: u32, b: v
     var normal = geometric;
     var tangent = vec4f(0.0);
     if (VERTEX_STRIDE > 0u) {
-        let i0 = load_index(3u * index) * VERTEX_STRIDE;
-        let i1 = load_index(3u * index + 1u) * VERTEX_STRIDE;
-        let i2 = load_index(3u * index + 2u) * VERTEX_STRIDE;
+        let first = vertex_words(index);
         if (HAS_NORMALS && (triangle.flags & TRIANGLE_FLAT) == 0u) {
-            normal = b.x * vertex_vec3(i0 + NORMAL_OFFSET) + b.y * vertex_vec3(i1 + NORMAL_OFFSET)
-                + b.z * vertex_vec3(i2 + NORMAL_OFFSET);
+            normal = interpolate_vec3(first + NORMAL_OFFSET, b);
         }
         if (HAS_COLORS) {
-            (*s).color = interpolate_vec4(i0 + COLOR_OFFSET, i1 + COLOR_OFFSET, i2 + COLOR_OFFSET, b);
+            (*s).color = interpolate_vec4(first + COLOR_OFFSET, b);
         }
         if (HAS_TANGENTS && (triangle.flags & TRIANGLE_TANGENTS) != 0u) {
-            tangent = interpolate_vec4(i0 + TANGENT_OFFSET, i1 + TANGENT_OFFSET, i2 + TANGENT_OFFSET, b);
+            tangent = interpolate_vec4(first + TANGENT_OFFSET, b);
         }
     }
     let uv = texture_coordinates(index, b);

@@ -17,7 +17,7 @@ fn Li(camera_ray: Ray, sampler: ptr<function, Sampler>) -> vec3f {
         if (count_step()) {
             break;
         }
-        let seed = hash2(vec2u(sampler.key ^ sampler.index, sampler.dimension));
+        let seed = ray_seed(*sampler);
         let hit = intersect(ray, depth == 1u, seed);
         if (hit.triangle == NONE) {
             if (HAS_ENVIRONMENT) {
