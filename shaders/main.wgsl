@@ -5,12 +5,14 @@
 #include "film.wgsl"
 #include "steps.wgsl"
 #include "sampler.wgsl"
+#include "accel/stack.wgsl"
 #include "integrator.wgsl"
 
 const TILE_SIZE: u32 = 8u;
 
 @compute @workgroup_size(64, 1, 1)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
+    stack_lane = lane;
     let item = id.x / dispatch.lane_stride;
     if (item * dispatch.lane_stride != id.x || item >= dispatch.item_count) {
         return;

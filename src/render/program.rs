@@ -100,13 +100,9 @@ pub fn constants(
 ) -> Vec<(&'static str, Constant)> {
     let format = &scene.vertex_format;
     let offset = |o: Option<u32>| Constant::U32(o.unwrap_or(0));
-    let light_triangles = scene
-        .triangles
-        .iter()
-        .any(|t| t.light != super::layout::NONE);
     let mut list = feature_constants(&scene.features);
     list.extend([
-        ("HAS_LIGHT_TRIANGLES", Constant::Bool(light_triangles)),
+        ("HAS_LIGHT_TRIANGLES", Constant::Bool(scene.has_light_triangles)),
         (
             "HAS_PUNCTUAL_LIGHTS",
             Constant::Bool(scene.lights.iter().any(super::lights::is_punctual)),
