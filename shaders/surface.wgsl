@@ -5,7 +5,7 @@
 #include "math/frame.wgsl"
 #include "math/float.wgsl"
 #include "vertex.wgsl"
-#include "accel/bvh.wgsl"
+#include "accel.wgsl"
 #include "texture.wgsl"
 
 struct Surface {

@@ -1,26 +1,10 @@
 // Traversal of the bounding volume hierarchy. Twin of src/accel/traverse.rs, operation for
 // operation; the bounds on its rounding errors are there, the layout of an element is in
 // src/accel/element.rs.
-//
-// Expects: Element, Triangle (types.wgsl); fn load_element(i: u32) -> Element;
-// const STACK_SIZE (Bvh::depth, at least 1), const HAS_ALPHA, HAS_SINGLE_SIDED;
-// fn count_step(), called once a loop iteration; and
-//
-//   fn accept_hit(triangle: Triangle, b: vec3f, back_face: bool, camera_ray: bool, seed: u32) -> bool
-//
-// which says whether a ray stops at a hit (alpha, culling). It must be a function of its arguments
-// alone: how often and in which order it is called for the triangles along a ray is left open.
+// Needs const STACK_SIZE (Bvh::depth, at least 1).
 
-#include "bindings.wgsl"
-#include "ray.wgsl"
-#include "steps.wgsl"
-#include "coverage.wgsl"
-#include "geometry/triangle.wgsl"
-#include "accel/element.wgsl"
+#include "accel/trace.wgsl"
 #include "accel/stack.wgsl"
-
-// Hit.triangle where nothing was hit.
-const MISS: u32 = 0xffffffffu;
 
 // Factor on the far end of a box's interval, 1 + 2^-18.
 const FAR_SLACK: f32 = 1.000003814697265625;
@@ -31,18 +15,6 @@ const SMALLEST_SHARE: f32 = 8.6736173798840355e-19;
 
 // Marks a reference to a pair.
 const LEAF_FLAG: u32 = 0x80000000u;
-
-// The closest hit.
-struct Hit {
-  // Ray parameter, 0 < t <= t_max; the ray's t_max for a miss.
-  t: f32,
-  // 2 x the index of its pair's element, + 1 for the second of the pair; or MISS.
-  triangle: u32,
-  // Barycentric coordinates of v0, v1, v2.
-  b: vec3f,
-  // Whether v0, v1, v2 run clockwise as seen from the ray's origin.
-  back_face: bool,
-}
 
 // What the box test needs of a ray.
 struct BoxSetup {
@@ -102,6 +74,12 @@ struct Planes {
   z: u32,
 }
 
+// Positive numbers are in the order of their bits, and all negative ones are before them. Some drivers
+// take a fraction of the time for whole numbers.
+fn bits(t: vec4f) -> vec4i {
+  return bitcast<vec4i>(t);
+}
+
 // Sorting keys of four children: where the ray enters a box, with the slot + 1 in the lowest bits;
 // for one that it misses, or enters beyond t_max, the largest with no slot.
 fn child_keys(near: Planes, far: Planes, start: vec3f, step: vec3f, t_max: f32, slots: vec4u, count: u32) -> vec4u {
@@ -111,8 +89,8 @@ fn child_keys(near: Planes, far: Planes, start: vec3f, step: vec3f, t_max: f32, 
   let far_x = start.x + plane_steps(far.x) * step.x;
   let far_y = start.y + plane_steps(far.y) * step.y;
   let far_z = start.z + plane_steps(far.z) * step.z;
-  let entry = max(max(near_x, near_y), max(near_z, vec4f(0.0)));
-  let exit = min(min(far_x, far_y), min(far_z, vec4f(t_max))) * FAR_SLACK;
+  let entry = max(max(bits(near_x), bits(near_y)), max(bits(near_z), vec4i(0)));
+  let exit = bits(bitcast<vec4f>(min(min(bits(far_x), bits(far_y)), min(bits(far_z), vec4i(bitcast<i32>(t_max))))) * FAR_SLACK);
   let is_hit = (entry <= exit) & (slots <= vec4u(count));
   return select(vec4u(0xfffffff0u), (bitcast<vec4u>(entry) & vec4u(0xfffffff0u)) | slots, is_hit);
 }
@@ -222,20 +200,4 @@ fn trace(ray: Ray, any_hit: bool, camera_ray: bool, seed: u32) -> Hit {
     current = ((group.header >> 4u) + slot) | select(LEAF_FLAG, 0u, slot < (group.header & 15u));
   }
   return best;
-}
-
-// The closest hit of a ray; hit.triangle is MISS where there is none.
-fn intersect(ray: Ray, camera_ray: bool, seed: u32) -> Hit {
-  if (COUNT_RAYS) {
-    closest_rays += 1u;
-  }
-  return trace(ray, false, camera_ray, seed);
-}
-
-// Whether anything that accept_hit accepts is hit at 0 < t <= t_max.
-fn occluded(ray: Ray, seed: u32) -> bool {
-  if (COUNT_RAYS) {
-    any_rays += 1u;
-  }
-  return trace(ray, true, false, seed).triangle != MISS;
 }

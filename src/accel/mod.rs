@@ -42,7 +42,8 @@ pub struct Bvh {
     pub elements: Vec<Element>,
     /// The triangles in the order of the tree.
     pub order: Vec<Placed>,
-    /// Stack entries that a traversal needs: the nodes on the longest way down.
+    /// Stack entries that a traversal needs: the nodes on the longest way down. 0 for a list: all
+    /// elements are pairs, each to be tested by every ray.
     pub depth: u32,
 }
 

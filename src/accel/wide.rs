@@ -15,6 +15,10 @@ impl Bvh {
     /// whatever the number of threads.
     pub fn build(triangles: &[[Vec3; 3]], options: &BuildOptions) -> Bvh {
         let pairs = pairs(triangles);
+        let limit: usize = std::env::var("LISTN").map_or(64, |v| v.parse().unwrap());
+        if pairs.len() <= limit {
+            return list(&pairs, triangles);
+        }
         let tree = BinaryTree::build(&primitives(&pairs, triangles), options.preset);
         let topology = tree.collapse();
         let plan = Plan::new(&topology, &tree, &pairs);
@@ -31,6 +35,23 @@ impl Bvh {
             order: order(&plan, &pairs),
             depth: topology.depth,
         }
+    }
+}
+
+/// All pairs, in the order of the input.
+fn list(pairs: &[Pair], triangles: &[[Vec3; 3]]) -> Bvh {
+    let mut elements = Vec::with_capacity(pairs.len());
+    let mut order = Vec::with_capacity(2 * pairs.len());
+    for pair in pairs {
+        let id = 2 * elements.len() as u32;
+        elements.push(Element::pair(pair.vertices(triangles), order.len() as u32));
+        let turned = [Some(pair.first), pair.second].into_iter().flatten();
+        order.extend((id..).zip(turned).map(|(id, turned)| Placed { turned, id }));
+    }
+    Bvh {
+        elements,
+        order,
+        depth: 0,
     }
 }
 

@@ -51,6 +51,8 @@ pub fn virtual_files(
     let constants = constants(scene, settings, count_steps);
     files.insert("features.wgsl".into(), features_wgsl(&constants));
     files.insert("buffers.wgsl".into(), gpu_scene.buffers_wgsl());
+    let structure = if scene.bvh.depth == 0 { "list" } else { "bvh" };
+    files.insert("accel.wgsl".into(), format!("#include \"accel/{structure}.wgsl\"\n"));
     Ok(files)
 }
 
@@ -121,6 +123,7 @@ pub fn constants(
         ("UV0_OFFSET", offset(format.uv0)),
         ("UV1_OFFSET", offset(format.uv1)),
         ("COLOR_OFFSET", offset(format.colors)),
+        ("PAIR_COUNT", Constant::U32(scene.bvh.elements.len() as u32)),
         ("STACK_SIZE", Constant::U32(scene.bvh.depth.max(1))),
         ("COUNT_STEPS", Constant::Bool(count_steps)),
         ("COUNT_RAYS", Constant::Bool(settings.stats)),
