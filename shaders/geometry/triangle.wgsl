@@ -111,6 +111,9 @@ struct FanCandidates {
   d: vec3f,
   first: bool,
   second: bool,
+  // Their edges, opposite to each vertex.
+  first_edges: vec3f,
+  second_edges: vec3f,
 }
 
 // The shared edge's value is found once: for the other triangle it has the other sign, exactly.
@@ -119,10 +122,14 @@ fn fan_candidates(setup: RaySetup, v0: vec3f, v1: vec3f, v2: vec3f, v3: vec3f) -
   let b = exact_shear(setup, v1);
   let c = exact_shear(setup, v2);
   let d = exact_shear(setup, v3);
+  return sheared_fan(a, b, c, d);
+}
+
+fn sheared_fan(a: vec3f, b: vec3f, c: vec3f, d: vec3f) -> FanCandidates {
   let diagonal = exact_edge(a.xy, c.xy);
   let first = vec3f(exact_edge(c.xy, b.xy), diagonal, exact_edge(b.xy, a.xy));
   let second = vec3f(exact_edge(d.xy, c.xy), exact_edge(a.xy, d.xy), -diagonal);
-  return FanCandidates(a, b, c, d, !signs_differ(first), !signs_differ(second));
+  return FanCandidates(a, b, c, d, !signs_differ(first), !signs_differ(second), first, second);
 }
 
 // One of the two triangles.

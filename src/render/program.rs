@@ -52,6 +52,10 @@ pub fn virtual_files(
     files.insert("features.wgsl".into(), features_wgsl(&constants));
     files.insert("buffers.wgsl".into(), gpu_scene.buffers_wgsl());
     let structure = if scene.bvh.depth == 0 { "list" } else { "bvh" };
+    if scene.bvh.depth == 0 {
+        let text = super::list_wgsl::list_wgsl(&scene.bvh.elements);
+        files.insert("list.wgsl".into(), text);
+    }
     files.insert("accel.wgsl".into(), format!("#include \"accel/{structure}.wgsl\"\n"));
     Ok(files)
 }
