@@ -156,13 +156,21 @@ fn is_worth_it(group: Group, t_max: f32) -> bool {
   return group.slots != 0u && bitcast<f32>(group.entry) <= t_max * FAR_SLACK;
 }
 
-// The closest hit, or with any_hit the first that is found.
-fn trace(ray: Ray, any_hit: bool, camera_ray: bool, seed: u32) -> Hit {
-  let setup = ray_setup(ray.origin, ray.direction);
-  let boxes = box_setup(ray);
-  var stack_size = 0u;
-  var best = Hit(ray.t_max, MISS, vec3f(0.0), false);
+fn trace(query: Query) -> Answer {
+  var answer = Answer(miss(query.ray), false);
+  if (!query.has_ray && !query.has_shadow) {
+    return answer;
+  }
+  var is_shadow = query.has_shadow;
+  var ray = query.ray;
+  if (is_shadow) {
+    ray = query.shadow;
+  }
+  var setup = ray_setup(ray.origin, ray.direction);
+  var boxes = box_setup(ray);
+  var best = miss(ray);
   var group = Group(0u, 0u, 0u);
+  var stack_size = 0u;
   var current = 0u;
   var searching = true;
   while (searching) {
@@ -181,23 +189,46 @@ fn trace(ray: Ray, any_hit: bool, camera_ray: bool, seed: u32) -> Hit {
         group = children;
       }
     } else {
-      best = test_pair(e, index, ray, setup, best, camera_ray, seed);
-      if (any_hit && best.triangle != MISS) {
-        break;
+      let camera_ray = query.camera_ray && !is_shadow;
+      best = test_pair(e, index, ray, setup, best, camera_ray, select(query.seed, query.shadow_seed, is_shadow));
+      if (is_shadow && best.triangle != MISS) {
+        group.slots = 0u;
+        stack_size = 0u;
       }
     }
     // Go on with the children that were put aside last.
-    while (!is_worth_it(group, best.t)) {
-      if (stack_size == 0u || count_step()) {
-        searching = false;
-        break;
+    if (!is_worth_it(group, best.t)) {
+      group.slots = 0u;
+      while (stack_size > 0u) {
+        if (count_step()) {
+          break;
+        }
+        stack_size -= 1u;
+        if (bitcast<f32>(stack_read_entry(stack_size)) <= best.t * FAR_SLACK) {
+          group = stack_read(stack_size);
+          break;
+        }
       }
-      stack_size -= 1u;
-      group = stack_read(stack_size);
     }
     let slot = (group.slots & 15u) - 1u;
-    group.slots >>= 4u;
     current = ((group.header >> 4u) + slot) | select(LEAF_FLAG, 0u, slot < (group.header & 15u));
+    if (group.slots != 0u) {
+      group.slots >>= 4u;
+    } else if (is_shadow) {
+      // The shadow ray is answered: take up the other one.
+      answer.occluded = best.triangle != MISS;
+      is_shadow = false;
+      searching = query.has_ray;
+      ray = query.ray;
+      setup = ray_setup(ray.origin, ray.direction);
+      boxes = box_setup(ray);
+      best = miss(ray);
+      group.slots = 0u;
+      current = 0u;
+    } else {
+      searching = false;
+    }
   }
-  return best;
+  answer.hit = best;
+  return answer;
 }

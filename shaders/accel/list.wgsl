@@ -15,16 +15,32 @@ struct ListHit {
 
 // Hits are put in order by a t from edges that are found quickly; the closest is then found again,
 // to nearly full precision.
-fn trace(ray: Ray, any_hit: bool, camera_ray: bool, seed: u32) -> Hit {
-  let setup = ray_setup(ray.origin, ray.direction);
-  let best = closest_of_all(setup, ray);
-  if (best.triangle == MISS || any_hit) {
-    return Hit(best.t, best.triangle, vec3f(0.0), false);
+fn trace(query: Query) -> Answer {
+  var answer = Answer(miss(query.ray), false);
+  for (var i = 0u; i < 2u; i += 1u) {
+    let is_shadow = i == 0u;
+    var ray = query.ray;
+    if (is_shadow) {
+      ray = query.shadow;
+    }
+    if (select(query.has_ray, query.has_shadow, is_shadow)) {
+      let setup = ray_setup(ray.origin, ray.direction);
+      let best = closest_of_all(setup, ray);
+      if (is_shadow) {
+        answer.occluded = best.triangle != MISS;
+      } else if (best.triangle != MISS) {
+        answer.hit = refine(best.triangle, setup);
+      }
+    }
   }
-  let v = pair_vertices(load_element(best.triangle >> 1u));
+  return answer;
+}
+
+fn refine(triangle: u32, setup: RaySetup) -> Hit {
+  let v = pair_vertices(load_element(triangle >> 1u));
   let fan = fan_candidates(setup, v.v0, v.v1, v.v2, v.v3);
-  let hit = refined_hit(fan_triangle(fan, (best.triangle & 1u) != 0u));
-  return Hit(hit.t, best.triangle, hit.b, hit.back_face);
+  let hit = refined_hit(fan_triangle(fan, (triangle & 1u) != 0u));
+  return Hit(hit.t, triangle, hit.b, hit.back_face);
 }
 
 // The closer of a hit and those on the triangles (a, b, c), which is number `id`, and (a, c, d).

@@ -22,6 +22,10 @@ fn stack_write(level: u32, group: Group) {
   traversal_stack[place + 2u * STACK_LANES] = group.entry;
 }
 
+fn stack_read_entry(level: u32) -> u32 {
+  return traversal_stack[level * 3u * STACK_LANES + stack_lane + 2u * STACK_LANES];
+}
+
 fn stack_read(level: u32) -> Group {
   let place = level * 3u * STACK_LANES + stack_lane;
   return Group(

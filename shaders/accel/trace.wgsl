@@ -1,7 +1,7 @@
-// What every acceleration structure has: hits, and the two questions that are asked of it. The file
+// What every acceleration structure has: hits, and the questions that are asked of it. The file
 // that the generated accel.wgsl includes (accel/bvh.wgsl or accel/list.wgsl) has
 //
-//   fn trace(ray: Ray, any_hit: bool, camera_ray: bool, seed: u32) -> Hit
+//   fn trace(query: Query) -> Answer
 //
 // Expects: Element, Triangle (types.wgsl); fn load_element(i: u32) -> Element;
 // const HAS_ALPHA, HAS_SINGLE_SIDED; fn count_step(), called once a loop iteration; and
@@ -33,18 +33,46 @@ struct Hit {
   back_face: bool,
 }
 
+// Up to two rays, which are traced one right after the other: a lane that is done with the first does
+// not wait for its neighbours.
+struct Query {
+  // Whose closest hit is asked for, if has_ray.
+  ray: Ray,
+  has_ray: bool,
+  // Whether the ray comes from the camera, and what decides by chance where surfaces are blended.
+  camera_ray: bool,
+  seed: u32,
+  // Of which only is asked whether anything is in its way, if has_shadow.
+  shadow: Ray,
+  has_shadow: bool,
+  shadow_seed: u32,
+}
+
+struct Answer {
+  // hit.triangle is MISS where there is none.
+  hit: Hit,
+  // Whether anything that accept_hit accepts is hit at 0 < t <= t_max.
+  occluded: bool,
+}
+
+fn miss(ray: Ray) -> Hit {
+  return Hit(ray.t_max, MISS, vec3f(0.0), false);
+}
+
+fn ask(query: Query) -> Answer {
+  if (COUNT_RAYS) {
+    closest_rays += select(0u, 1u, query.has_ray);
+    any_rays += select(0u, 1u, query.has_shadow);
+  }
+  return trace(query);
+}
+
 // The closest hit of a ray; hit.triangle is MISS where there is none.
 fn intersect(ray: Ray, camera_ray: bool, seed: u32) -> Hit {
-  if (COUNT_RAYS) {
-    closest_rays += 1u;
-  }
-  return trace(ray, false, camera_ray, seed);
+  return ask(Query(ray, true, camera_ray, seed, ray, false, 0u)).hit;
 }
 
 // Whether anything that accept_hit accepts is hit at 0 < t <= t_max.
 fn occluded(ray: Ray, seed: u32) -> bool {
-  if (COUNT_RAYS) {
-    any_rays += 1u;
-  }
-  return trace(ray, true, false, seed).triangle != MISS;
+  return ask(Query(ray, false, false, 0u, ray, true, seed)).occluded;
 }
