@@ -4,10 +4,12 @@
 // radiance when the path has ended, and
 //
 //   fn path_begin(camera_ray: Ray, sampler: ptr<function, Sampler>) -> Path
-//   fn path_step(path: ptr<function, Path>, sampler: ptr<function, Sampler>) -> bool
+//   fn path_query(path: Path, sampler: ptr<function, Sampler>) -> Query
+//   fn path_step(path: ptr<function, Path>, answer: Answer, sampler: ptr<function, Sampler>) -> bool
 //
-// the second of which takes a path one edge further, and is false once it has ended. A lane whose
-// path has ended begins its next sample at once, while its neighbours are still on their way.
+// which say what rays to trace next, and what follows from their answer; path_step is false once the
+// path has ended. A lane whose path has ended begins its next sample while its neighbours are still
+// on their way, and one whose rays take long holds up nobody for longer than TRACE_ELEMENTS.
 
 #include "bindings.wgsl"
 #include "camera.wgsl"
@@ -18,6 +20,9 @@
 #include "integrator.wgsl"
 
 const TILE_SIZE: u32 = 8u;
+
+// Elements of the acceleration structure that a lane looks at before lanes that are done go on.
+override TRACE_ELEMENTS: u32 = 16u;
 
 @compute @workgroup_size(64, 1, 1)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -37,6 +42,8 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
     var random: Sampler;
     var path: Path;
     var on_its_way = false;
+    var traversal: Traversal;
+    var tracing = false;
     loop {
         if (count_step()) {
             break;
@@ -52,13 +59,20 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
             random = sampler_begin(position, sample_index, frame.seed);
             path = path_begin(camera_ray(position, next_2d(&random)), &random);
         }
-        on_its_way = path_step(&path, &random);
-        if (!on_its_way) {
-            if (out_of_steps() || loops_are_cut()) {
-                break;
+        if (!tracing) {
+            traversal = begin_query(path_query(path, &random));
+            tracing = true;
+        }
+        if (trace_on(&traversal, TRACE_ELEMENTS)) {
+            tracing = false;
+            on_its_way = path_step(&path, trace_answer(traversal), &random);
+            if (!on_its_way) {
+                if (out_of_steps() || loops_are_cut()) {
+                    break;
+                }
+                note_sample_steps(steps_before);
+                film_add(&pixel, path.L);
             }
-            note_sample_steps(steps_before);
-            film_add(&pixel, path.L);
         }
     }
     film[index] = pixel;

@@ -44,23 +44,24 @@ fn path_begin(camera_ray: Ray, sampler: ptr<function, Sampler>) -> Path {
     return Path(vec3f(0.0), 0u, vec3f(1.0), (*sampler).dimension, camera_ray, last, vec3f(0.0), 0u, camera_ray);
 }
 
-// Goes one edge further; false if the path has ended. The ray along the edge is traced together
-// with the one to the light that the last vertex chose.
-fn path_step(path: ptr<function, Path>, sampler: ptr<function, Sampler>) -> bool {
-    (*sampler).dimension = (*path).first_dimension + (*path).depth * DIMENSIONS_PER_VERTEX;
-    let ray = (*path).ray;
-    let has_shadow = HAS_LIGHTS && any((*path).light != vec3f(0.0));
-    let is_first = (*path).depth == 0u;
-    let answer = ask(Query(
-        ray, is_going((*path)), is_first, ray_seed(*sampler), (*path).shadow, has_shadow, (*path).light_seed,
-    ));
-    if (has_shadow && !answer.occluded) {
+// What to ask next: the ray along the next edge is traced together with the one to the light that
+// the last vertex chose.
+fn path_query(path: Path, sampler: ptr<function, Sampler>) -> Query {
+    (*sampler).dimension = path.first_dimension + path.depth * DIMENSIONS_PER_VERTEX;
+    let has_shadow = HAS_LIGHTS && any(path.light != vec3f(0.0));
+    let is_first = path.depth == 0u;
+    return Query(path.ray, is_going(path), is_first, ray_seed(*sampler), path.shadow, has_shadow, path.light_seed);
+}
+
+// Goes one edge further; false if the path has ended.
+fn path_step(path: ptr<function, Path>, answer: Answer, sampler: ptr<function, Sampler>) -> bool {
+    if (HAS_LIGHTS && !answer.occluded) {
         (*path).L += (*path).light;
     }
+    (*path).light = vec3f(0.0);
     if (!is_going(*path)) {
         return false;
     }
-    (*path).light = vec3f(0.0);
     (*path).depth += 1u;
     path_vertex(path, answer.hit, sampler);
     return is_going(*path) || any((*path).light != vec3f(0.0));

@@ -151,84 +151,110 @@ fn test_pair(e: Element, index: u32, ray: Ray, setup: RaySetup, closest: Hit, ca
   return best;
 }
 
-// Whether a child of the group may hold a closer hit.
-fn is_worth_it(group: Group, t_max: f32) -> bool {
-  return group.slots != 0u && bitcast<f32>(group.entry) <= t_max * FAR_SLACK;
+// A query under way. The rest of its state, the children that wait, is on the stack.
+struct Traversal {
+  query: Query,
+  // The ray that is traced now: query.shadow, then query.ray.
+  ray: Ray,
+  is_shadow: bool,
+  setup: RaySetup,
+  boxes: BoxSetup,
+  best: Hit,
+  group: Group,
+  stack_size: u32,
+  // The element to look at next.
+  next: u32,
+  occluded: bool,
+  searching: bool,
 }
 
-fn trace(query: Query) -> Answer {
-  var answer = Answer(miss(query.ray), false);
-  if (!query.has_ray && !query.has_shadow) {
-    return answer;
-  }
-  var is_shadow = query.has_shadow;
-  var ray = query.ray;
+fn trace_begin(query: Query) -> Traversal {
+  var t: Traversal;
+  t.query = query;
+  t.occluded = false;
+  t.searching = query.has_ray || query.has_shadow;
+  t.stack_size = 0u;
+  trace_ray(&t, query.has_shadow);
+  return t;
+}
+
+// Takes up one of the two rays.
+fn trace_ray(t: ptr<function, Traversal>, is_shadow: bool) {
+  (*t).is_shadow = is_shadow;
+  (*t).ray = (*t).query.ray;
   if (is_shadow) {
-    ray = query.shadow;
+    (*t).ray = (*t).query.shadow;
   }
-  var setup = ray_setup(ray.origin, ray.direction);
-  var boxes = box_setup(ray);
-  var best = miss(ray);
-  var group = Group(0u, 0u, 0u);
-  var stack_size = 0u;
-  var current = 0u;
-  var searching = true;
-  while (searching) {
+  (*t).setup = ray_setup((*t).ray.origin, (*t).ray.direction);
+  (*t).boxes = box_setup((*t).ray);
+  (*t).best = miss((*t).ray);
+  (*t).group = Group(0u, 0u, 0u);
+  (*t).next = 0u;
+}
+
+fn trace_answer(t: Traversal) -> Answer {
+  return Answer(t.best, t.occluded);
+}
+
+// Looks at so many elements, or fewer where that answers the query; false if there is more to do.
+fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
+  for (var i = 0u; i < elements && (*t).searching; i += 1u) {
     if (count_step()) {
+      (*t).searching = false;
       break;
     }
-    let index = current & ~LEAF_FLAG;
+    let index = (*t).next & ~LEAF_FLAG;
     let e = load_element(index);
-    if (current < LEAF_FLAG) {
-      let children = visit_node(e, boxes, best.t);
+    if ((*t).next < LEAF_FLAG) {
+      let children = visit_node(e, (*t).boxes, (*t).best.t);
       if (children.slots != 0u) {
-        if (group.slots != 0u) {
-          stack_write(stack_size, group);
-          stack_size += 1u;
+        if ((*t).group.slots != 0u) {
+          stack_write((*t).stack_size, (*t).group);
+          (*t).stack_size += 1u;
         }
-        group = children;
+        (*t).group = children;
       }
     } else {
-      let camera_ray = query.camera_ray && !is_shadow;
-      best = test_pair(e, index, ray, setup, best, camera_ray, select(query.seed, query.shadow_seed, is_shadow));
-      if (is_shadow && best.triangle != MISS) {
-        group.slots = 0u;
-        stack_size = 0u;
+      let seed = select((*t).query.seed, (*t).query.shadow_seed, (*t).is_shadow);
+      let camera_ray = (*t).query.camera_ray && !(*t).is_shadow;
+      (*t).best = test_pair(e, index, (*t).ray, (*t).setup, (*t).best, camera_ray, seed);
+      if ((*t).is_shadow && (*t).best.triangle != MISS) {
+        (*t).group.slots = 0u;
+        (*t).stack_size = 0u;
       }
     }
-    // Go on with the children that were put aside last.
-    if (!is_worth_it(group, best.t)) {
-      group.slots = 0u;
-      while (stack_size > 0u) {
-        if (count_step()) {
-          break;
-        }
-        stack_size -= 1u;
-        if (bitcast<f32>(stack_read_entry(stack_size)) <= best.t * FAR_SLACK) {
-          group = stack_read(stack_size);
-          break;
-        }
+    go_on(t);
+  }
+  return !(*t).searching;
+}
+
+// Finds the next element, among the children that were put aside last; where there is none the ray
+// is done.
+fn go_on(t: ptr<function, Traversal>) {
+  let t_max = (*t).best.t * FAR_SLACK;
+  if ((*t).group.slots == 0u || bitcast<f32>((*t).group.entry) > t_max) {
+    (*t).group.slots = 0u;
+    while ((*t).stack_size > 0u) {
+      if (count_step()) {
+        break;
       }
-    }
-    let slot = (group.slots & 15u) - 1u;
-    current = ((group.header >> 4u) + slot) | select(LEAF_FLAG, 0u, slot < (group.header & 15u));
-    if (group.slots != 0u) {
-      group.slots >>= 4u;
-    } else if (is_shadow) {
-      // The shadow ray is answered: take up the other one.
-      answer.occluded = best.triangle != MISS;
-      is_shadow = false;
-      searching = query.has_ray;
-      ray = query.ray;
-      setup = ray_setup(ray.origin, ray.direction);
-      boxes = box_setup(ray);
-      best = miss(ray);
-      group.slots = 0u;
-      current = 0u;
-    } else {
-      searching = false;
+      (*t).stack_size -= 1u;
+      if (bitcast<f32>(stack_read_entry((*t).stack_size)) <= t_max) {
+        (*t).group = stack_read((*t).stack_size);
+        break;
+      }
     }
   }
-  answer.hit = best;
-  return answer;
+  if ((*t).group.slots != 0u) {
+    let slot = ((*t).group.slots & 15u) - 1u;
+    let is_leaf = slot >= ((*t).group.header & 15u);
+    (*t).next = (((*t).group.header >> 4u) + slot) | select(0u, LEAF_FLAG, is_leaf);
+    (*t).group.slots >>= 4u;
+  } else if ((*t).is_shadow) {
+    (*t).occluded = (*t).best.triangle != MISS;
+    (*t).searching = (*t).query.has_ray;
+    trace_ray(t, false);
+  } else {
+    (*t).searching = false;
+  }
 }

@@ -13,27 +13,39 @@ struct ListHit {
   triangle: u32,
 }
 
-// Hits are put in order by a t from edges that are found quickly; the closest is then found again,
-// to nearly full precision.
-fn trace(query: Query) -> Answer {
-  var answer = Answer(miss(query.ray), false);
+struct Traversal {
+  query: Query,
+  answer: Answer,
+}
+
+fn trace_begin(query: Query) -> Traversal {
+  return Traversal(query, Answer(miss(query.ray), false));
+}
+
+fn trace_answer(t: Traversal) -> Answer {
+  return t.answer;
+}
+
+// Answers the query. Hits are put in order by a t from edges that are found quickly; the closest is
+// then found again, to nearly full precision.
+fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
   for (var i = 0u; i < 2u; i += 1u) {
     let is_shadow = i == 0u;
-    var ray = query.ray;
+    var ray = (*t).query.ray;
     if (is_shadow) {
-      ray = query.shadow;
+      ray = (*t).query.shadow;
     }
-    if (select(query.has_ray, query.has_shadow, is_shadow)) {
+    if (select((*t).query.has_ray, (*t).query.has_shadow, is_shadow)) {
       let setup = ray_setup(ray.origin, ray.direction);
       let best = closest_of_all(setup, ray);
       if (is_shadow) {
-        answer.occluded = best.triangle != MISS;
+        (*t).answer.occluded = best.triangle != MISS;
       } else if (best.triangle != MISS) {
-        answer.hit = refine(best.triangle, setup);
+        (*t).answer.hit = refine(best.triangle, setup);
       }
     }
   }
-  return answer;
+  return true;
 }
 
 fn refine(triangle: u32, setup: RaySetup) -> Hit {

@@ -1,7 +1,10 @@
 // What every acceleration structure has: hits, and the questions that are asked of it. The file
 // that the generated accel.wgsl includes (accel/bvh.wgsl or accel/list.wgsl) has
 //
-//   fn trace(query: Query) -> Answer
+//   struct Traversal
+//   fn trace_begin(query: Query) -> Traversal
+//   fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool
+//   fn trace_answer(t: Traversal) -> Answer
 //
 // Expects: Element, Triangle (types.wgsl); fn load_element(i: u32) -> Element;
 // const HAS_ALPHA, HAS_SINGLE_SIDED; fn count_step(), called once a loop iteration; and
@@ -59,12 +62,19 @@ fn miss(ray: Ray) -> Hit {
   return Hit(ray.t_max, MISS, vec3f(0.0), false);
 }
 
-fn ask(query: Query) -> Answer {
+fn begin_query(query: Query) -> Traversal {
   if (COUNT_RAYS) {
     closest_rays += select(0u, 1u, query.has_ray);
     any_rays += select(0u, 1u, query.has_shadow);
   }
-  return trace(query);
+  return trace_begin(query);
+}
+
+// Traces both rays to their end.
+fn ask(query: Query) -> Answer {
+  var t = begin_query(query);
+  trace_on(&t, 0xffffffffu);
+  return trace_answer(t);
 }
 
 // The closest hit of a ray; hit.triangle is MISS where there is none.
