@@ -58,6 +58,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
             let sample_index = add_u64(dispatch.first_sample_low, dispatch.first_sample_high, pixel.count);
             random = sampler_begin(position, sample_index, frame.seed);
             path = path_begin(camera_ray(position, next_2d(&random)), &random);
+            on_its_way = true;
         }
         if (!tracing) {
             traversal = begin_query(path_query(path, &random));
