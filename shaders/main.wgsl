@@ -22,7 +22,7 @@
 const TILE_SIZE: u32 = 8u;
 
 // Elements of the acceleration structure that a lane looks at before lanes that are done go on.
-override TRACE_ELEMENTS: u32 = 16u;
+override TRACE_ELEMENTS: u32 = 8u;
 
 @compute @workgroup_size(64, 1, 1)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
