@@ -1,7 +1,7 @@
 //! Where to split: the surface area heuristic over bins of centroids (Wald, *On fast Construction
 //! of SAH-based Bounding Volume Hierarchies*, 2007), on all three axes.
 
-use super::primitive::{Primitive, fold_chunks};
+use super::primitive::{Primitive, fold_slices};
 use crate::geometry::Aabb;
 use std::cmp::Ordering;
 
@@ -101,7 +101,7 @@ fn histogram(primitives: &[Primitive], binning: &Binning) -> Histogram {
         }
         a
     };
-    fold_chunks(primitives, || [[Bin::EMPTY; MAX_BINS]; 3], add, merge)
+    fold_slices(primitives, || [[Bin::EMPTY; MAX_BINS]; 3], add, merge)
 }
 
 fn add_to_bins(histogram: &mut Histogram, binning: &Binning, primitive: &Primitive) {

@@ -4,6 +4,7 @@
 //! [`Bvh::sah_cost`] rates it, and [`Bvh::intersect`] and [`Bvh::occluded`] are the oracle of
 //! `shaders/accel/bvh.wgsl`, which does the same operations in the same order.
 
+pub mod binary;
 mod bins;
 mod build;
 mod cost;
@@ -12,7 +13,9 @@ mod primitive;
 mod traverse;
 mod validate;
 
+pub use binary::Preset;
 pub use node::BvhNode;
+pub use primitive::Primitive;
 pub use traverse::{FAR_SLACK, Hit};
 pub use validate::{BvhError, Side};
 

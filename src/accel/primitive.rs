@@ -4,12 +4,12 @@ use crate::geometry::Aabb;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// A triangle's exact box and its index in the input.
+/// A box to build a tree over, such as a triangle's exact bounds, and its index in the input.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Primitive {
+pub struct Primitive {
     /// Exact bounds, metres.
     pub bounds: Aabb,
-    /// Index of the triangle in the input.
+    /// Index in the input.
     pub index: u32,
 }
 
@@ -39,13 +39,13 @@ pub(super) fn primitives(triangles: &[[Vec3; 3]]) -> Vec<Primitive> {
 /// The bounds of all boxes.
 pub(super) fn bounds(primitives: &[Primitive]) -> Aabb {
     let add = |acc: &mut Aabb, p: &Primitive| *acc = acc.union(p.bounds);
-    fold_chunks(primitives, || Aabb::EMPTY, add, Aabb::union)
+    fold_slices(primitives, || Aabb::EMPTY, add, Aabb::union)
 }
 
 /// The bounds of all centroids.
 pub(super) fn centroid_bounds(primitives: &[Primitive]) -> Aabb {
     let add = |acc: &mut Aabb, p: &Primitive| *acc = acc.with_point(p.centroid());
-    fold_chunks(primitives, || Aabb::EMPTY, add, Aabb::union)
+    fold_slices(primitives, || Aabb::EMPTY, add, Aabb::union)
 }
 
 /// Primitives that one task folds; more of them are spread over threads.
@@ -53,20 +53,20 @@ const CHUNK: usize = 1 << 15;
 
 /// Folds over primitives, in parallel where there are many. `merge` must be commutative and
 /// associative bit for bit, as minima, maxima and integer sums are: the threads are not ordered.
-pub(super) fn fold_chunks<T: Send>(
-    primitives: &[Primitive],
+pub(super) fn fold_slices<I: Sync, T: Send>(
+    items: &[I],
     empty: impl Fn() -> T + Sync + Send,
-    add: impl Fn(&mut T, &Primitive) + Sync + Send,
+    add: impl Fn(&mut T, &I) + Sync + Send,
     merge: impl Fn(T, T) -> T + Sync + Send,
 ) -> T {
-    let fold = |chunk: &[Primitive]| {
+    let fold = |chunk: &[I]| {
         let mut sum = empty();
-        chunk.iter().for_each(|p| add(&mut sum, p));
+        chunk.iter().for_each(|item| add(&mut sum, item));
         sum
     };
-    if primitives.len() <= CHUNK {
-        return fold(primitives);
+    if items.len() <= CHUNK {
+        return fold(items);
     }
-    let chunks = primitives.par_chunks(CHUNK);
+    let chunks = items.par_chunks(CHUNK);
     chunks.map(fold).reduce(&empty, merge)
 }

@@ -1,0 +1,226 @@
+//! From the binary tree to nodes of up to eight children: which nodes to leave out, so that the
+//! surface area heuristic is least. Dynamic programming after Ylitie, Karras and Laine, *Efficient
+//! Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, 2017, section 3, without its
+//! choice of leaves, since a leaf here is one box in any case.
+
+use super::{BinaryNode, BinaryTree};
+
+/// Most children of a wide node.
+pub const WIDTH: usize = 8;
+
+/// Smaller subtrees than this, in leaves, are worked on by one thread.
+const PARALLEL_LIMIT: u32 = 4096;
+
+/// Which nodes of a binary tree become the children of which wide node.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WideTopology {
+    /// Node 0 is the root; a node comes before its children. There is always a root.
+    pub nodes: Vec<WideChildren>,
+    /// Wide nodes on the longest way down.
+    pub depth: u32,
+}
+
+/// The children of a wide node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WideChildren {
+    /// Their indices in [`BinaryTree::nodes`]; the first `count` count.
+    children: [u32; WIDTH],
+    /// 1 to 8; 0 in the root of an empty tree.
+    count: u32,
+    /// Those among the children that are not leaves are the wide nodes `first_inner`,
+    /// `first_inner + 1` and so on, in their order.
+    pub first_inner: u32,
+}
+
+impl WideChildren {
+    /// Indices in [`BinaryTree::nodes`], at most [`WIDTH`].
+    pub fn children(&self) -> &[u32] {
+        &self.children[..self.count as usize]
+    }
+}
+
+impl BinaryTree {
+    /// Chooses the wide nodes so that the sum of their areas is least.
+    pub fn collapse(&self) -> WideTopology {
+        let mut choices = vec![Choices(0); self.nodes.len()];
+        if let [root, ..] = &self.nodes[..] {
+            let scale = area_scale(root);
+            let (own, below) = choices.split_at_mut(1);
+            Subtree {
+                nodes: &self.nodes,
+                node: 0,
+                own: &mut own[0],
+                below,
+                scale,
+            }
+            .solve();
+        }
+        emit(self, &choices)
+    }
+}
+
+/// Brings areas into the range of f32: the root's is 1.
+fn area_scale(root: &BinaryNode) -> f64 {
+    let area = root.bounds.half_area();
+    if area > 0.0 { 1.0 / area } else { 0.0 }
+}
+
+/// How the roots that a subtree may have are shared out between its children: in bits 3 j to
+/// 3 j + 2, for at most j + 2 roots, the number for the left child; 0 says that one root less is
+/// better.
+#[derive(Debug, Clone, Copy)]
+struct Choices(u32);
+
+impl Choices {
+    fn set(&mut self, roots: usize, left: usize) {
+        self.0 |= (left as u32) << (3 * (roots - 2));
+    }
+
+    fn left(self, roots: usize) -> usize {
+        (self.0 >> (3 * (roots - 2)) & 7) as usize
+    }
+}
+
+/// Costs with at most 1 to 7 roots.
+type Costs = [f32; WIDTH - 1];
+
+struct Subtree<'a> {
+    nodes: &'a [BinaryNode],
+    /// Its root.
+    node: usize,
+    /// The choices of its root.
+    own: &'a mut Choices,
+    /// Those of the nodes below, which are neighbours of each other.
+    below: &'a mut [Choices],
+    scale: f64,
+}
+
+impl Subtree<'_> {
+    fn solve(self) -> Costs {
+        let node = &self.nodes[self.node];
+        if node.is_leaf() {
+            return [0.0; WIDTH - 1];
+        }
+        let first = node.index as usize;
+        let (children, below) = self.below.split_at_mut(2);
+        let (left_own, right_own) = children.split_at_mut(1);
+        let left_leaves = self.nodes[first].leaves as usize;
+        let (left_below, right_below) = below.split_at_mut(2 * (left_leaves - 1));
+        let (nodes, scale) = (self.nodes, self.scale);
+        let subtree = |node, own, below| Subtree {
+            nodes,
+            node,
+            own,
+            below,
+            scale,
+        };
+        let left = subtree(first, &mut left_own[0], left_below);
+        let right = subtree(first + 1, &mut right_own[0], right_below);
+        let (left, right) = if node.leaves > PARALLEL_LIMIT {
+            rayon::join(|| left.solve(), || right.solve())
+        } else {
+            (left.solve(), right.solve())
+        };
+        let right_leaves = node.leaves as usize - left_leaves;
+        let area = (node.bounds.half_area() * scale) as f32;
+        combine(area, [left, right], [left_leaves, right_leaves], self.own)
+    }
+}
+
+/// The costs of a node from those of its children, and how to reach them.
+fn combine(area: f32, children: [Costs; 2], leaves: [usize; 2], choices: &mut Choices) -> Costs {
+    let mut costs = [f32::INFINITY; WIDTH - 1];
+    let most = WIDTH.min(leaves[0] + leaves[1]);
+    let mut shared_out = f32::INFINITY;
+    for roots in 2..=most {
+        let (cost, left) = share_out(roots, &children, leaves);
+        // More roots never cost more; a tie goes to opening the node: fewer wide nodes.
+        if roots < WIDTH {
+            costs[roots - 1] = cost;
+        }
+        shared_out = cost;
+        choices.set(roots, left);
+    }
+    // As a wide node of its own.
+    costs[0] = area + shared_out;
+    for roots in 2..WIDTH {
+        let fewer = costs[roots - 2];
+        if fewer < costs[roots - 1] {
+            costs[roots - 1] = fewer;
+            choices.0 &= !(7 << (3 * (roots - 2)));
+        }
+    }
+    costs
+}
+
+/// The least cost with this many roots in both children together, and how many are in the left.
+fn share_out(roots: usize, [left, right]: &[Costs; 2], leaves: [usize; 2]) -> (f32, usize) {
+    let least = roots.saturating_sub(leaves[1].min(WIDTH - 1)).max(1);
+    let most = (roots - 1).min(leaves[0].min(WIDTH - 1));
+    let mut best = (f32::INFINITY, least);
+    for k in least..=most {
+        let cost = left[k - 1] + right[roots - k - 1];
+        if cost < best.0 {
+            best = (cost, k);
+        }
+    }
+    best
+}
+
+/// Follows the choices down from the root.
+fn emit(tree: &BinaryTree, choices: &[Choices]) -> WideTopology {
+    let mut nodes = vec![WideChildren {
+        children: [0; WIDTH],
+        count: 0,
+        first_inner: 1,
+    }];
+    let mut depth = 1;
+    // Wide nodes to fill: their index, the binary node, the level.
+    let mut stack = Vec::new();
+    if !tree.nodes.is_empty() {
+        stack.push((0, 0, 1));
+    }
+    while let Some((wide, root, level)) = stack.pop() {
+        depth = level.max(depth);
+        let mut children = WideChildren {
+            children: [0; WIDTH],
+            count: 0,
+            first_inner: nodes.len() as u32,
+        };
+        open(tree, choices, root, &mut children);
+        nodes[wide] = children;
+        for &child in children.children() {
+            if !tree.nodes[child as usize].is_leaf() {
+                stack.push((nodes.len(), child, level + 1));
+                nodes.push(children);
+            }
+        }
+    }
+    WideTopology { nodes, depth }
+}
+
+/// Lists the children of the wide node that stands for a binary node.
+fn open(tree: &BinaryTree, choices: &[Choices], root: u32, children: &mut WideChildren) {
+    // Roots of subtrees, each with the number of roots that it may have.
+    let mut stack = [(0, 0); WIDTH];
+    stack[0] = (root, WIDTH);
+    let mut size = 1;
+    while size > 0 {
+        size -= 1;
+        let (node, mut roots) = stack[size];
+        let BinaryNode { index, leaves, .. } = tree.nodes[node as usize];
+        roots = roots.min(leaves as usize);
+        while roots >= 2 && choices[node as usize].left(roots) == 0 {
+            roots -= 1;
+        }
+        if roots == 1 {
+            children.children[children.count as usize] = node;
+            children.count += 1;
+            continue;
+        }
+        let left = choices[node as usize].left(roots);
+        stack[size] = (index + 1, roots - left);
+        stack[size + 1] = (index, left);
+        size += 2;
+    }
+}
