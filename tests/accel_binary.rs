@@ -2,8 +2,8 @@
 
 mod accel_common;
 
-use accel_common::*;
-use etendue::accel::binary::{BinaryTree, MAX_BINARY_DEPTH, WideTopology};
+use accel_common::{Triangles, needles, scaled, soup, sphere, terrain};
+use etendue::accel::binary::{BinaryTree, MAX_BINARY_DEPTH, WIDTH, WideTopology};
 use etendue::accel::{Preset, Primitive};
 use etendue::geometry::Aabb;
 use glam::Vec3;
@@ -164,6 +164,71 @@ fn the_tree_does_not_depend_on_the_threads() {
         for n in [2, 3, 8] {
             assert!(one == with_threads(n), "{preset:?}, {n} threads");
         }
+    }
+}
+
+/// Meshes of the tests of quality, by name.
+fn meshes() -> Vec<(&'static str, Triangles)> {
+    let uneven = [
+        terrain(60, 9),
+        scaled(&sphere(20), 0.05, Vec3::new(3.0, 2.0, 1.0)),
+        boxes_in_a_row(),
+    ];
+    vec![
+        ("sphere", sphere(50)),
+        ("terrain", terrain(70, 9)),
+        ("soup", soup(10_000, 0.05, 3)),
+        ("needles", needles(5000, 4)),
+        ("uneven", uneven.concat()),
+    ]
+}
+
+fn boxes_in_a_row() -> Triangles {
+    accel_common::boxes(20)
+}
+
+/// The best tree is that of the balanced preset, improved by moves none of which raises the cost.
+#[test]
+fn the_best_tree_costs_no_more_than_the_balanced_one() {
+    for (name, triangles) in meshes() {
+        let cost = PRESETS.map(|preset| build_tree(&boxes(&triangles), preset).0.cost());
+        println!("{name}: {cost:?}");
+        assert!(cost[2] <= cost[1] * (1.0 + 1e-9), "{name}: {cost:?}");
+    }
+}
+
+/// Opens the largest child until there are eight: the way that is simple.
+fn greedy_collapse(tree: &BinaryTree) -> Vec<Vec<u32>> {
+    let area = |i: u32| tree.nodes[i as usize].bounds.half_area();
+    let is_leaf = |i: u32| tree.nodes[i as usize].is_leaf();
+    let (mut nodes, mut stack) = (vec![], vec![0]);
+    while let Some(root) = stack.pop() {
+        let mut children = vec![root];
+        while children.len() < WIDTH {
+            let inner = (0..children.len()).filter(|&k| !is_leaf(children[k]));
+            let largest = inner.max_by(|&a, &b| area(children[a]).total_cmp(&area(children[b])));
+            let Some(largest) = largest else { break };
+            let first = tree.nodes[children.swap_remove(largest) as usize].index;
+            children.extend([first, first + 1]);
+        }
+        stack.extend(children.iter().filter(|&&child| !is_leaf(child)));
+        nodes.push(children);
+    }
+    nodes
+}
+
+#[test]
+fn the_collapse_costs_no_more_than_opening_the_largest() {
+    for (name, triangles) in meshes() {
+        let (tree, wide) = build_tree(&boxes(&triangles), Preset::Balanced);
+        let area = |children: &[u32]| {
+            let boxes = children.iter().map(|&i| tree.nodes[i as usize].bounds);
+            boxes.fold(Aabb::EMPTY, Aabb::union).half_area()
+        };
+        let cost: f64 = wide.nodes.iter().map(|node| area(node.children())).sum();
+        let greedy: f64 = greedy_collapse(&tree).iter().map(|c| area(c)).sum();
+        println!("{name}: {:.4}", cost / greedy);
+        assert!(cost <= greedy * (1.0 + 1e-5), "{name}: {cost} > {greedy}");
     }
 }
 

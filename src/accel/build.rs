@@ -3,7 +3,7 @@
 use super::bins::{Binning, MAX_BINS, best_split};
 use super::node::{BvhNode, Child};
 use super::primitive::{self, Primitive, centroid_bounds, primitives};
-use super::{BuildOptions, Bvh, MAX_DEPTH, MAX_LEAF_SIZE};
+use super::{BuildOptions, Bvh, MAX_DEPTH, MAX_LEAF_SIZE, Preset};
 use crate::geometry::Aabb;
 use glam::Vec3;
 
@@ -27,7 +27,11 @@ impl Bvh {
         let mut slots = vec![BvhNode::empty(); primitives.len().max(1)];
         let builder = Builder {
             max_leaf_size: options.max_leaf_size.clamp(1, MAX_LEAF_SIZE) as usize,
-            bins: options.bins.clamp(2, MAX_BINS),
+            bins: match options.preset {
+                Preset::Fast => 8,
+                Preset::Balanced => options.bins.clamp(2, MAX_BINS),
+                Preset::Best => MAX_BINS,
+            },
         };
         let task = Task {
             primitives: &mut primitives,

@@ -31,6 +31,8 @@ pub const MAX_TRIANGLES: usize = (1 << 27) - 1;
 /// What [`Bvh::build`] may be told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BuildOptions {
+    /// How much time the build may take for a better tree.
+    pub preset: Preset,
     /// Most triangles in a leaf, 1 to [`MAX_LEAF_SIZE`]; others are taken as the nearest of these.
     pub max_leaf_size: u32,
     /// Bins an axis, 2 to 32; others are taken as the nearest of these.
@@ -40,6 +42,7 @@ pub struct BuildOptions {
 impl Default for BuildOptions {
     fn default() -> BuildOptions {
         BuildOptions {
+            preset: Preset::default(),
             max_leaf_size: 4,
             bins: 16,
         }

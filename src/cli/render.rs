@@ -41,7 +41,10 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     let scene = timed(&mut time.load, || load(args, &mut warnings))?;
     let mut settings = settings::of(args, &scene)?;
     let device = timed(&mut time.device, || open_device(args))?;
-    let options = BuildOptions::default();
+    let options = BuildOptions {
+        preset: args.bvh,
+        ..BuildOptions::default()
+    };
     let prepared = timed(&mut time.accel, || {
         Prepared::new(&scene, settings.camera, &options)
     })?;

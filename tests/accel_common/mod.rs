@@ -153,6 +153,7 @@ pub fn build(triangles: &[[Vec3; 3]], max_leaf_size: u32, bins: usize) -> (Bvh, 
         &BuildOptions {
             max_leaf_size,
             bins,
+            ..BuildOptions::default()
         },
     );
     if let Err(error) = bvh.validate(triangles) {
