@@ -1,5 +1,5 @@
 // Buffers of fixed size. The large ones, which may be split over pages, are in the generated
-// buffers.wgsl and read through load_node, load_triangle, load_index, load_vertex_word,
+// buffers.wgsl and read through load_element, load_index, load_vertex_word,
 // load_texel_word, load_environment_texel and load_environment_alias.
 
 #include "types.wgsl"

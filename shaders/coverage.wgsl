@@ -6,17 +6,17 @@
 #include "sampler.wgsl"
 
 // The fraction of light that a surface stops at a point: 0 or 1 if masked, alpha if blended.
-fn coverage(triangle: Triangle, index: u32, b: vec3f) -> f32 {
+fn coverage(triangle: Triangle, b: vec3f) -> f32 {
     if (!HAS_ALPHA || (triangle.flags & TRIANGLE_ALPHA) == 0u) {
         return 1.0;
     }
     var alpha = materials[triangle.material].base_color.a;
     if (HAS_COLORS) {
-        alpha *= interpolate_vec4(vertex_words(index) + COLOR_OFFSET, b).a;
+        alpha *= interpolate_vec4(vertex_words(triangle.index) + COLOR_OFFSET, b).a;
     }
     let slot = materials[triangle.material].base_color_texture;
     if (HAS_BASE_COLOR_TEXTURE && slot.texture != NONE) {
-        let uv = texture_coordinates(index, b);
+        let uv = texture_coordinates(triangle.index, b);
         alpha *= sample_texture(slot, uv.xy, uv.zw).a;
     }
     if ((materials[triangle.material].flags & MATERIAL_MASK) != 0u) {
@@ -28,12 +28,12 @@ fn coverage(triangle: Triangle, index: u32, b: vec3f) -> f32 {
 // Whether a ray meets the surface at this hit. Blended surfaces are met with probability alpha,
 // decided by a hash of the ray's seed and the triangle, so that the order in which a traversal
 // finds hits has no influence.
-fn accept_hit(triangle: Triangle, index: u32, b: vec3f, back_face: bool, camera: bool, seed: u32) -> bool {
+fn accept_hit(triangle: Triangle, b: vec3f, back_face: bool, camera: bool, seed: u32) -> bool {
     if (HAS_SINGLE_SIDED && camera && back_face && (triangle.flags & TRIANGLE_SINGLE_SIDED) != 0u) {
         return false;
     }
     if (HAS_ALPHA && (triangle.flags & TRIANGLE_ALPHA) != 0u) {
-        return unit_float(hash2(vec2u(seed, index))) < coverage(triangle, index, b);
+        return unit_float(hash2(vec2u(seed, triangle.index))) < coverage(triangle, b);
     }
     return true;
 }

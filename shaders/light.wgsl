@@ -58,20 +58,20 @@ fn sample_light(s: Surface, sampler: ptr<function, Sampler>) -> LightSample {
     return sample;
 }
 
+// The ray from a surface to a light sample: what it meets hides the light.
+fn shadow_ray(s: Surface, light: LightSample) -> Ray {
+    var ray = spawn_ray(s, light.wi);
+    if (!light.at_infinity) {
+        let target_point = offset_origin(light.position, light.position_error, light.normal, -light.wi);
+        ray.direction = target_point - ray.origin;
+        ray.t_max = 1.0;
+        ray.end = light.triangle;
+    }
+    return ray;
+}
+
 // 1 if a light sample's radiance reaches the surface, else 0; blended surfaces in between decide
 // by chance.
 fn visibility_of_light(s: Surface, light: LightSample, seed: u32) -> f32 {
-    var ray = spawn_ray(s, light.wi);
-    if (light.at_infinity) {
-        return visibility(ray, seed);
-    }
-    let target_point = offset_origin(light.position, light.position_error, light.normal, -light.wi);
-    ray.direction = target_point - ray.origin;
-    ray.t_max = 1.0;
-    ray.end = light.triangle;
-    return visibility(ray, seed);
-}
-
-fn visibility(ray: Ray, seed: u32) -> f32 {
-    return select(1.0, 0.0, occluded(ray, seed));
+    return select(1.0, 0.0, occluded(shadow_ray(s, light), seed));
 }

@@ -1,16 +1,27 @@
 // The kernel: each lane owns a pixel and adds samples to it until it has dispatch.target_count.
+//
+// An integrator (shaders/integrator/NAME.wgsl) defines a struct `Path`, whose L is the sample's
+// radiance when the path has ended, and
+//
+//   fn path_begin(camera_ray: Ray, sampler: ptr<function, Sampler>) -> Path
+//   fn path_step(path: ptr<function, Path>, sampler: ptr<function, Sampler>) -> bool
+//
+// the second of which takes a path one edge further, and is false once it has ended. A lane whose
+// path has ended begins its next sample at once, while its neighbours are still on their way.
 
 #include "bindings.wgsl"
 #include "camera.wgsl"
 #include "film.wgsl"
 #include "steps.wgsl"
 #include "sampler.wgsl"
+#include "accel/stack.wgsl"
 #include "integrator.wgsl"
 
 const TILE_SIZE: u32 = 8u;
 
 @compute @workgroup_size(64, 1, 1)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
+    stack_lane = lane;
     let item = id.x / dispatch.lane_stride;
     if (item * dispatch.lane_stride != id.x || item >= dispatch.item_count) {
         return;
@@ -22,21 +33,33 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let index = (position.y - frame.first_row) * frame.width + position.x;
     var pixel = film[index];
     let count_before = pixel.count;
-    while (pixel.count < dispatch.target_count) {
-        if (count_step() || no_room_for_sample()) {
+    var steps_before = steps;
+    var random: Sampler;
+    var path: Path;
+    var on_its_way = false;
+    loop {
+        if (count_step()) {
             break;
         }
-        let steps_before = steps;
-        // Draw one sample of the pixel's square.
-        let sample_index = add_u64(dispatch.first_sample_low, dispatch.first_sample_high, pixel.count);
-        var random = sampler_begin(position, sample_index, frame.seed);
-        reset_ray_counts();
-        let L = Li(camera_ray(position, next_2d(&random)), &random);
-        if (out_of_steps() || loops_are_cut()) {
-            break;
+        // Begin to draw a sample of the pixel's square.
+        if (!on_its_way) {
+            if (pixel.count >= dispatch.target_count || no_room_for_sample()) {
+                break;
+            }
+            steps_before = steps;
+            reset_ray_counts();
+            let sample_index = add_u64(dispatch.first_sample_low, dispatch.first_sample_high, pixel.count);
+            random = sampler_begin(position, sample_index, frame.seed);
+            path = path_begin(camera_ray(position, next_2d(&random)), &random);
         }
-        note_sample_steps(steps_before);
-        film_add(&pixel, L);
+        on_its_way = path_step(&path, &random);
+        if (!on_its_way) {
+            if (out_of_steps() || loops_are_cut()) {
+                break;
+            }
+            note_sample_steps(steps_before);
+            film_add(&pixel, path.L);
+        }
     }
     film[index] = pixel;
     if (COUNT_STEPS && pixel.count < dispatch.target_count) {

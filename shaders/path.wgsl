@@ -19,94 +19,133 @@ struct LastBounce {
     alone: bool,
 }
 
-// Radiance along a ray from the camera. `light_samples` and `bsdf_samples` choose the techniques
-// that may find lights with a finite density; with both they are weighted by the power heuristic.
-fn path_Li(camera_ray: Ray, sampler: ptr<function, Sampler>, max_depth: u32, light_samples: bool, bsdf_samples: bool) -> vec3f {
-    var L = vec3f(0.0);
-    var beta = vec3f(1.0);
-    var ray = camera_ray;
-    var last = LastBounce(vec3f(0.0), vec3f(0.0), 0.0, true);
-    let first_dimension = (*sampler).dimension;
-    for (var depth = 1u; depth <= max_depth; depth += 1u) {
-        if (count_step()) {
-            break;
-        }
-        (*sampler).dimension = first_dimension + (depth - 1u) * DIMENSIONS_PER_VERTEX;
-        let hit = intersect(ray, depth == 1u, ray_seed(*sampler));
-        if (hit.triangle == NONE) {
-            if (HAS_ENVIRONMENT) {
-                let weight = environment_hit_weight(ray.direction, last, light_samples, bsdf_samples);
-                L += beta * weight * environment_radiance(ray.direction);
-            }
-            break;
-        }
-        let surface = surface_at(ray, hit);
-        if (HAS_EMISSION || HAS_UNLIT) {
-            let weight = surface_hit_weight(surface, last, light_samples, bsdf_samples);
-            L += beta * weight * emitted_radiance(surface);
-        }
-        if (depth == max_depth || is_unlit(surface)) {
-            break;
-        }
-        let bsdf = bsdf_at(surface);
-        let wo = to_local(surface.shading, surface.wo);
-        if (HAS_LIGHTS && bsdf_has_smooth_part(bsdf)) {
-            L += beta * sample_direct(surface, bsdf, wo, sampler, light_samples, bsdf_samples);
-        }
-        // Go on in a direction drawn from the BSDF.
-        (*sampler).dimension = first_dimension + (depth - 1u) * DIMENSIONS_PER_VERTEX + 3u;
-        let u = next_2d(sampler);
-        let choice = next_2d(sampler);
-        let sample = bsdf_sample(bsdf, wo, u, choice.x);
-        let wi = to_world(surface.shading, sample.wi);
-        if (sample.wi.z <= 0.0 || dot(wi, surface.normal) <= 0.0) {
-            break;
-        }
-        beta *= sample.weight;
-        if (all(beta == vec3f(0.0))) {
-            break;
-        }
-        last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta);
-        ray = spawn_ray(surface, wi);
-        // End paths that carry little, and make the survivors carry their share.
-        if (depth >= ROULETTE_DEPTH) {
-            let survival = min(min(max_component(beta), 1.0), ROULETTE_MAX_SURVIVAL);
-            if (choice.y >= survival) {
-                break;
-            }
-            beta /= survival;
-        }
-    }
-    return L;
+// A path under way. An integrator that includes this file says which techniques find lights with a
+// finite density, const LIGHT_SAMPLES and BSDF_SAMPLES (with both they are weighted by the power
+// heuristic), and const MAX_EDGES, a limit below the user's.
+struct Path {
+    // Radiance gathered so far.
+    L: vec3f,
+    // Edges gone.
+    depth: u32,
+    // What light that is met from here on is multiplied by.
+    beta: vec3f,
+    first_dimension: u32,
+    ray: Ray,
+    last: LastBounce,
+    // What the light sample at the last vertex adds to L if nothing is in the way of its ray.
+    light: vec3f,
+    light_seed: u32,
+    shadow: Ray,
 }
 
-// Light that arrives directly, found by sampling a light.
-fn sample_direct(s: Surface, bsdf: Bsdf, wo: vec3f, sampler: ptr<function, Sampler>, light_samples: bool, bsdf_samples: bool) -> vec3f {
+// A path along a ray from the camera.
+fn path_begin(camera_ray: Ray, sampler: ptr<function, Sampler>) -> Path {
+    let last = LastBounce(vec3f(0.0), vec3f(0.0), 0.0, true);
+    return Path(vec3f(0.0), 0u, vec3f(1.0), (*sampler).dimension, camera_ray, last, vec3f(0.0), 0u, camera_ray);
+}
+
+// Goes one edge further; false if the path has ended. The ray along the edge is traced together
+// with the one to the light that the last vertex chose.
+fn path_step(path: ptr<function, Path>, sampler: ptr<function, Sampler>) -> bool {
+    (*sampler).dimension = (*path).first_dimension + (*path).depth * DIMENSIONS_PER_VERTEX;
+    let ray = (*path).ray;
+    let has_shadow = HAS_LIGHTS && any((*path).light != vec3f(0.0));
+    let is_first = (*path).depth == 0u;
+    let answer = ask(Query(
+        ray, is_going((*path)), is_first, ray_seed(*sampler), (*path).shadow, has_shadow, (*path).light_seed,
+    ));
+    if (has_shadow && !answer.occluded) {
+        (*path).L += (*path).light;
+    }
+    if (!is_going(*path)) {
+        return false;
+    }
+    (*path).light = vec3f(0.0);
+    (*path).depth += 1u;
+    path_vertex(path, answer.hit, sampler);
+    return is_going(*path) || any((*path).light != vec3f(0.0));
+}
+
+// Whether there is a next edge.
+fn is_going(path: Path) -> bool {
+    return any(path.beta != vec3f(0.0));
+}
+
+// Gathers light where the path has arrived, and chooses where it goes on.
+fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampler>) {
+    let ray = (*path).ray;
+    let beta = (*path).beta;
+    // Most ways out of here end the path.
+    (*path).beta = vec3f(0.0);
+    if (hit.triangle == NONE) {
+        if (HAS_ENVIRONMENT) {
+            let weight = environment_hit_weight(ray.direction, (*path).last);
+            (*path).L += beta * weight * environment_radiance(ray.direction);
+        }
+        return;
+    }
+    let surface = surface_at(ray, hit);
+    if (HAS_EMISSION || HAS_UNLIT) {
+        let weight = surface_hit_weight(surface, (*path).last);
+        (*path).L += beta * weight * emitted_radiance(surface);
+    }
+    if ((*path).depth >= min(frame.max_depth, MAX_EDGES) || is_unlit(surface)) {
+        return;
+    }
+    let bsdf = bsdf_at(surface);
+    let wo = to_local(surface.shading, surface.wo);
+    if (HAS_LIGHTS && bsdf_has_smooth_part(bsdf)) {
+        sample_direct(path, beta, surface, bsdf, wo, sampler);
+    }
+    // Go on in a direction drawn from the BSDF.
+    (*sampler).dimension = (*path).first_dimension + ((*path).depth - 1u) * DIMENSIONS_PER_VERTEX + 3u;
+    let u = next_2d(sampler);
+    let choice = next_2d(sampler);
+    let sample = bsdf_sample(bsdf, wo, u, choice.x);
+    let wi = to_world(surface.shading, sample.wi);
+    if (sample.wi.z <= 0.0 || dot(wi, surface.normal) <= 0.0) {
+        return;
+    }
+    (*path).beta = beta * sample.weight * roulette((*path).depth, beta * sample.weight, choice.y);
+    (*path).last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta);
+    (*path).ray = spawn_ray(surface, wi);
+}
+
+// Ends paths that carry little (0), and makes the survivors carry their share.
+fn roulette(depth: u32, beta: vec3f, u: f32) -> f32 {
+    if (depth < ROULETTE_DEPTH) {
+        return 1.0;
+    }
+    let survival = min(min(max_component(beta), 1.0), ROULETTE_MAX_SURVIVAL);
+    return select(0.0, 1.0 / survival, u < survival);
+}
+
+// Chooses a light, and what the path gains if the light can be seen.
+fn sample_direct(path: ptr<function, Path>, beta: vec3f, s: Surface, bsdf: Bsdf, wo: vec3f, sampler: ptr<function, Sampler>) {
     let seed = ray_seed(*sampler) ^ 0x5bd1e995u;
     let light = sample_light(s, sampler);
-    if (!(light.pdf > 0.0) || (!light.delta && !light_samples)) {
-        return vec3f(0.0);
+    if (!(light.pdf > 0.0) || (!light.delta && !LIGHT_SAMPLES)) {
+        return;
     }
     let wi = to_local(s.shading, light.wi);
     if (wi.z <= 0.0 || dot(light.wi, s.normal) <= 0.0) {
-        return vec3f(0.0);
+        return;
     }
     var contribution = bsdf_eval(bsdf, wo, wi) * light.weight;
-    if (!light.delta && bsdf_samples) {
+    if (!light.delta && BSDF_SAMPLES) {
         contribution *= power_heuristic(light.pdf, bsdf_pdf(bsdf, wo, wi));
     }
-    if (all(contribution == vec3f(0.0))) {
-        return vec3f(0.0);
-    }
-    return contribution * visibility_of_light(s, light, seed);
+    (*path).light = beta * contribution;
+    (*path).light_seed = seed;
+    (*path).shadow = shadow_ray(s, light);
 }
 
 // Weight of an emitter that a BSDF sample (or the camera) hit.
-fn surface_hit_weight(s: Surface, last: LastBounce, light_samples: bool, bsdf_samples: bool) -> f32 {
-    if (last.alone || !light_samples || s.light == NONE) {
+fn surface_hit_weight(s: Surface, last: LastBounce) -> f32 {
+    if (last.alone || !LIGHT_SAMPLES || s.light == NONE) {
         return 1.0;
     }
-    if (!bsdf_samples) {
+    if (!BSDF_SAMPLES) {
         return 0.0;
     }
     let distance = stable_length(s.position - last.position);
@@ -115,11 +154,11 @@ fn surface_hit_weight(s: Surface, last: LastBounce, light_samples: bool, bsdf_sa
     return power_heuristic(last.pdf, pdf);
 }
 
-fn environment_hit_weight(direction: vec3f, last: LastBounce, light_samples: bool, bsdf_samples: bool) -> f32 {
-    if (last.alone || !light_samples) {
+fn environment_hit_weight(direction: vec3f, last: LastBounce) -> f32 {
+    if (last.alone || !LIGHT_SAMPLES) {
         return 1.0;
     }
-    if (!bsdf_samples) {
+    if (!BSDF_SAMPLES) {
         return 0.0;
     }
     let choice = lights[frame.environment_light].probability;

@@ -5,7 +5,7 @@
 #include "math/frame.wgsl"
 #include "math/float.wgsl"
 #include "vertex.wgsl"
-#include "accel/bvh.wgsl"
+#include "accel.wgsl"
 #include "texture.wgsl"
 
 struct Surface {
@@ -52,7 +52,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
     s.light = triangle.light;
     s.back_face = hit.back_face;
     s.color = vec4f(1.0);
-    read_vertices(&s, triangle, hit.triangle, b);
+    read_vertices(&s, triangle, b);
     return s;
 }
 
@@ -82,12 +82,12 @@ fn stable_length(v: vec3f) -> f32 {
 }
 
 // Interpolate what the scene's vertices carry, and set up the shading frame.
-fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, index: u32, b: vec3f) {
+fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
     let geometric = (*s).normal;
     var normal = geometric;
     var tangent = vec4f(0.0);
     if (VERTEX_STRIDE > 0u) {
-        let first = vertex_words(index);
+        let first = vertex_words(triangle.index);
         if (HAS_NORMALS && (triangle.flags & TRIANGLE_FLAT) == 0u) {
             normal = interpolate_vec3(first + NORMAL_OFFSET, b);
         }
@@ -98,7 +98,7 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, index: u32, b: v
             tangent = interpolate_vec4(first + TANGENT_OFFSET, b);
         }
     }
-    let uv = texture_coordinates(index, b);
+    let uv = texture_coordinates(triangle.index, b);
     (*s).uv0 = uv.xy;
     (*s).uv1 = uv.zw;
     normal = normalize_or(normal, geometric);

@@ -83,20 +83,15 @@ struct FilmPixel {
     any_rays: u32,
 }
 
-// A node holds the boxes of its two children.
-// A child is a leaf of `count` triangles from `left`/`right` on, or, with count 0, a node.
-struct BvhNode {
-    left_min: vec3f,
-    left: u32,
-    left_max: vec3f,
-    left_count: u32,
-    right_min: vec3f,
-    right: u32,
-    right_max: vec3f,
-    right_count: u32,
+// 64 bytes of the acceleration structure, a wide node or a pair of triangles (accel/element.wgsl).
+struct Element {
+    a: vec4u,
+    b: vec4u,
+    c: vec4u,
+    d: vec4u,
 }
 
-// A triangle in the order of the BVH, relative to the camera's position.
+// A triangle of a pair, relative to the camera's position.
 struct Triangle {
     v0: vec3f,
     material: u32,
@@ -106,6 +101,8 @@ struct Triangle {
     v2: vec3f,
     // Index into `lights` if it emits, else NONE.
     light: u32,
+    // Its position in the order of the tree, by which its vertex indices are found.
+    index: u32,
 }
 
 // A use of a texture: uv' = matrix * uv + offset.
@@ -184,10 +181,13 @@ struct PunctualLight {
 
 const NONE: u32 = 0xffffffffu;
 
-const TRIANGLE_ALPHA: u32 = 1u;         // coverage must be evaluated
-const TRIANGLE_SINGLE_SIDED: u32 = 2u;  // camera rays pass its back face
-const TRIANGLE_FLAT: u32 = 4u;          // its mesh has no shading normals
-const TRIANGLE_TANGENTS: u32 = 8u;      // its mesh has tangents
+// A triangle's attributes: the index of its material, and above it these bits.
+const MATERIAL_INDEX_MASK: u32 = 0x00ffffffu;
+const TRIANGLE_ALPHA: u32 = 0x01000000u;         // coverage must be evaluated
+const TRIANGLE_SINGLE_SIDED: u32 = 0x02000000u;  // camera rays pass its back face
+const TRIANGLE_FLAT: u32 = 0x04000000u;          // its mesh has no shading normals
+const TRIANGLE_TANGENTS: u32 = 0x08000000u;      // its mesh has tangents
+const TRIANGLE_EMITS: u32 = 0x10000000u;         // it is in the table of lights
 
 const MATERIAL_DOUBLE_SIDED: u32 = 1u;
 const MATERIAL_MASK: u32 = 2u;

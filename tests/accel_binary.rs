@@ -1,12 +1,13 @@
 //! The builders of binary trees at all presets, and the collapse to wide nodes.
 
-mod accel_common;
+#[path = "accel_common/meshes.rs"]
+mod meshes;
 
-use accel_common::{Triangles, needles, scaled, soup, sphere, terrain};
 use etendue::accel::binary::{BinaryTree, MAX_BINARY_DEPTH, WIDTH, WideTopology};
 use etendue::accel::{Preset, Primitive};
 use etendue::geometry::Aabb;
 use glam::Vec3;
+use meshes::{Triangles, needles, scaled, soup, sphere, terrain};
 use proptest::prelude::*;
 
 const PRESETS: [Preset; 3] = [Preset::Fast, Preset::Balanced, Preset::Best];
@@ -168,7 +169,7 @@ fn the_tree_does_not_depend_on_the_threads() {
 }
 
 /// Meshes of the tests of quality, by name.
-fn meshes() -> Vec<(&'static str, Triangles)> {
+fn test_meshes() -> Vec<(&'static str, Triangles)> {
     let uneven = [
         terrain(60, 9),
         scaled(&sphere(20), 0.05, Vec3::new(3.0, 2.0, 1.0)),
@@ -184,13 +185,13 @@ fn meshes() -> Vec<(&'static str, Triangles)> {
 }
 
 fn boxes_in_a_row() -> Triangles {
-    accel_common::boxes(20)
+    meshes::boxes(20)
 }
 
 /// The best tree is that of the balanced preset, improved by moves none of which raises the cost.
 #[test]
 fn the_best_tree_costs_no_more_than_the_balanced_one() {
-    for (name, triangles) in meshes() {
+    for (name, triangles) in test_meshes() {
         let cost = PRESETS.map(|preset| build_tree(&boxes(&triangles), preset).0.cost());
         println!("{name}: {cost:?}");
         assert!(cost[2] <= cost[1] * (1.0 + 1e-9), "{name}: {cost:?}");
@@ -219,7 +220,7 @@ fn greedy_collapse(tree: &BinaryTree) -> Vec<Vec<u32>> {
 
 #[test]
 fn the_collapse_costs_no_more_than_opening_the_largest() {
-    for (name, triangles) in meshes() {
+    for (name, triangles) in test_meshes() {
         let (tree, wide) = build_tree(&boxes(&triangles), Preset::Balanced);
         let area = |children: &[u32]| {
             let boxes = children.iter().map(|&i| tree.nodes[i as usize].bounds);

@@ -1,173 +1,234 @@
 // Traversal of the bounding volume hierarchy. Twin of src/accel/traverse.rs, operation for
-// operation; the bounds on its rounding errors are there.
-//
-// Expects: BvhNode, Triangle (types.wgsl); const STACK_SIZE (Bvh::depth, at least 1),
-// const HAS_ALPHA, HAS_SINGLE_SIDED; fn load_node(i: u32) -> BvhNode; fn load_triangle(i: u32) -> Triangle,
-// in the tree's order; fn count_step(), called once a loop iteration; and
-//
-//   fn accept_hit(triangle: Triangle, triangle_index: u32, b: vec3f, back_face: bool,
-//                 camera_ray: bool, seed: u32) -> bool
-//
-// which says whether a ray stops at a hit (alpha, culling). It must be a function of its arguments
-// alone: how often and in which order it is called for the triangles along a ray is left open.
+// operation; the bounds on its rounding errors are there, the layout of an element is in
+// src/accel/element.rs.
+// Needs const STACK_SIZE (Bvh::depth, at least 1).
 
-#include "bindings.wgsl"
-#include "ray.wgsl"
-#include "steps.wgsl"
-#include "coverage.wgsl"
-#include "geometry/triangle.wgsl"
-
-// Hit.triangle where nothing was hit.
-const MISS: u32 = 0xffffffffu;
+#include "accel/trace.wgsl"
+#include "accel/stack.wgsl"
 
 // Factor on the far end of a box's interval, 1 + 2^-18.
 const FAR_SLACK: f32 = 1.000003814697265625;
 
-// A direction component nearer to 0 than this is taken as this for the reciprocal.
-const SMALLEST_DIRECTION: f32 = 1e-36;
+// A direction component nearer to 0 than this share of the largest is taken as this for the
+// reciprocal, 2^-60: no box can tell, and nothing overflows.
+const SMALLEST_SHARE: f32 = 8.6736173798840355e-19;
 
-// Marks a reference to a leaf: 4 bits below it hold the count, 27 the first triangle.
+// Marks a reference to a pair.
 const LEAF_FLAG: u32 = 0x80000000u;
-
-// The reference to nothing.
-const NOTHING: u32 = 0xffffffffu;
-
-// The closest hit.
-struct Hit {
-  // Ray parameter, 0 < t <= t_max; the ray's t_max for a miss.
-  t: f32,
-  // Position of the triangle in the tree's order, or MISS.
-  triangle: u32,
-  // Barycentric coordinates of v0, v1, v2.
-  b: vec3f,
-  // Whether v0, v1, v2 run clockwise as seen from the ray's origin.
-  back_face: bool,
-}
 
 // What the box test needs of a ray.
 struct BoxSetup {
   origin: vec3f,
   inverse: vec3f,
-  forward: vec3<bool>,
 }
-
-// The two children of a node as references, the one to visit first before the other.
-struct Visit {
-  near: u32,
-  far: u32,
-}
-
-// References to nodes and leaves that wait. Private, so that it is not cleared for each ray.
-var<private> traversal_stack: array<u32, STACK_SIZE>;
 
 fn box_setup(ray: Ray) -> BoxSetup {
   let d = ray.direction;
-  let smallest = select(vec3f(-SMALLEST_DIRECTION), vec3f(SMALLEST_DIRECTION), d >= vec3f(0.0));
-  let inverse = 1.0 / select(d, smallest, abs(d) < vec3f(SMALLEST_DIRECTION));
-  return BoxSetup(ray.origin, inverse, inverse >= vec3f(0.0));
+  let size = abs(d);
+  let least = max(max(size.x, size.y), size.z) * SMALLEST_SHARE;
+  let smallest = select(vec3f(-least), vec3f(least), (bitcast<vec3u>(d) >> vec3u(31u)) == vec3u(0u));
+  return BoxSetup(ray.origin, 1.0 / select(d, smallest, size < vec3f(least)));
 }
 
-// Where the ray enters a box, at least 0; -1 where it misses it or enters beyond t_max.
-// Near and far faces are chosen by the ray's sign, so that an inverted box is missed.
-fn box_entry(setup: BoxSetup, low: vec3f, high: vec3f, t_max: f32) -> f32 {
-  let near = (select(high, low, setup.forward) - setup.origin) * setup.inverse;
-  let far = (select(low, high, setup.forward) - setup.origin) * setup.inverse;
-  let entry = max(max(near.x, near.y), max(near.z, 0.0));
-  let exit = min(min(far.x, far.y), min(far.z, t_max)) * FAR_SLACK;
-  return select(-1.0, entry, entry <= exit);
+// Sorts two keys.
+fn in_order(keys: vec2u) -> vec2u {
+  return vec2u(min(keys.x, keys.y), max(keys.x, keys.y));
 }
 
-// What the stack keeps of a child.
-fn child_reference(index: u32, count: u32) -> u32 {
-  return select(index, LEAF_FLAG | (count << 27u) | index, count > 0u);
+// Two groups of four keys in one order (Batcher's network for 8, 19 comparators).
+fn sort_keys(low: vec4u, high: vec4u) -> Group {
+  var k0 = in_order(vec2u(low.x, low.y));
+  var k2 = in_order(vec2u(low.z, low.w));
+  var k4 = in_order(vec2u(high.x, high.y));
+  var k6 = in_order(vec2u(high.z, high.w));
+  let a02 = in_order(vec2u(k0.x, k2.x));
+  let a13 = in_order(vec2u(k0.y, k2.y));
+  let a46 = in_order(vec2u(k4.x, k6.x));
+  let a57 = in_order(vec2u(k4.y, k6.y));
+  let b12 = in_order(vec2u(a13.x, a02.y));
+  let b56 = in_order(vec2u(a57.x, a46.y));
+  // Now a02.x <= b12.x <= b12.y <= a13.y, and a46.x <= b56.x <= b56.y <= a57.y.
+  let c04 = in_order(vec2u(a02.x, a46.x));
+  let c15 = in_order(vec2u(b12.x, b56.x));
+  let c26 = in_order(vec2u(b12.y, b56.y));
+  let c37 = in_order(vec2u(a13.y, a57.y));
+  let d24 = in_order(vec2u(c26.x, c04.y));
+  let d35 = in_order(vec2u(c37.x, c15.y));
+  let e12 = in_order(vec2u(c15.x, d24.x));
+  let e34 = in_order(vec2u(d35.x, d24.y));
+  let e56 = in_order(vec2u(d35.y, c26.y));
+  let slots = (c04.x & 15u) | ((e12.x & 15u) << 4u) | ((e12.y & 15u) << 8u) | ((e34.x & 15u) << 12u)
+    | ((e34.y & 15u) << 16u) | ((e56.x & 15u) << 20u) | ((e56.y & 15u) << 24u) | ((c37.y & 15u) << 28u);
+  return Group(0u, slots, c04.x & 0xfffffff0u);
 }
 
-// Tests both children of a node; those that are hit, the nearer one first.
-fn visit_node(node: BvhNode, setup: BoxSetup, t_max: f32) -> Visit {
-  let left_entry = box_entry(setup, node.left_min, node.left_max, t_max);
-  let right_entry = box_entry(setup, node.right_min, node.right_max, t_max);
-  let left = select(child_reference(node.left, node.left_count), NOTHING, left_entry < 0.0);
-  let right = select(child_reference(node.right, node.right_count), NOTHING, right_entry < 0.0);
-  let right_first = left == NOTHING || (right != NOTHING && right_entry < left_entry);
-  return Visit(select(left, right, right_first), select(right, left, right_first));
+// The planes of four children as numbers.
+fn plane_steps(word: u32) -> vec4f {
+  return vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(255u));
 }
 
-// The closer of best and the hits among a leaf's triangles; at equal t the smaller position wins.
-fn test_leaf(leaf: u32, ray: Ray, setup: RaySetup, closest: Hit, camera_ray: bool, seed: u32) -> Hit {
-  let first = leaf & 0x07ffffffu;
-  let end = first + ((leaf >> 27u) & 15u);
+// Four children's near or far planes on the three axes.
+struct Planes {
+  x: u32,
+  y: u32,
+  z: u32,
+}
+
+// Positive numbers are in the order of their bits, and all negative ones are before them. Some drivers
+// take a fraction of the time for whole numbers.
+fn bits(t: vec4f) -> vec4i {
+  return bitcast<vec4i>(t);
+}
+
+// Sorting keys of four children: where the ray enters a box, with the slot + 1 in the lowest bits;
+// for one that it misses, or enters beyond t_max, the largest with no slot.
+fn child_keys(near: Planes, far: Planes, start: vec3f, step: vec3f, t_max: f32, slots: vec4u, count: u32) -> vec4u {
+  let near_x = start.x + plane_steps(near.x) * step.x;
+  let near_y = start.y + plane_steps(near.y) * step.y;
+  let near_z = start.z + plane_steps(near.z) * step.z;
+  let far_x = start.x + plane_steps(far.x) * step.x;
+  let far_y = start.y + plane_steps(far.y) * step.y;
+  let far_z = start.z + plane_steps(far.z) * step.z;
+  let entry = max(max(bits(near_x), bits(near_y)), max(bits(near_z), vec4i(0)));
+  let exit = bits(bitcast<vec4f>(min(min(bits(far_x), bits(far_y)), min(bits(far_z), vec4i(bitcast<i32>(t_max))))) * FAR_SLACK);
+  let is_hit = (entry <= exit) & (slots <= vec4u(count));
+  return select(vec4u(0xfffffff0u), (bitcast<vec4u>(entry) & vec4u(0xfffffff0u)) | slots, is_hit);
+}
+
+// Tests the children of a node; those that are hit, the nearest first.
+// Near and far planes are chosen by the ray's sign, so that an inverted box is missed.
+fn visit_node(e: Element, setup: BoxSetup, t_max: f32) -> Group {
+  let start = (node_origin(e) - setup.origin) * setup.inverse;
+  let step = node_step(e) * setup.inverse;
+  let count = node_child_count(e);
+  let back = setup.inverse < vec3f(0.0);
+  let near_x = select(e.b.xy, e.b.zw, back.x);
+  let far_x = select(e.b.zw, e.b.xy, back.x);
+  let near_y = select(e.c.xy, e.c.zw, back.y);
+  let far_y = select(e.c.zw, e.c.xy, back.y);
+  let near_z = select(e.d.xy, e.d.zw, back.z);
+  let far_z = select(e.d.zw, e.d.xy, back.z);
+  let low = child_keys(
+    Planes(near_x.x, near_y.x, near_z.x), Planes(far_x.x, far_y.x, far_z.x),
+    start, step, t_max, vec4u(1u, 2u, 3u, 4u), count,
+  );
+  let high = child_keys(
+    Planes(near_x.y, near_y.y, near_z.y), Planes(far_x.y, far_y.y, far_z.y),
+    start, step, t_max, vec4u(5u, 6u, 7u, 8u), count,
+  );
+  var group = sort_keys(low, high);
+  group.header = e.a.w;
+  return group;
+}
+
+// The closer of best and the hits on a pair of triangles; at equal t the smaller number wins.
+fn test_pair(e: Element, index: u32, ray: Ray, setup: RaySetup, closest: Hit, camera_ray: bool, seed: u32) -> Hit {
+  let v = pair_vertices(e);
+  let fan = fan_candidates(setup, v.v0, v.v1, v.v2, v.v3);
   var best = closest;
-  for (var i = first; i < end; i++) {
+  var waiting = select(0u, 1u, fan.first) | select(0u, 2u, fan.second);
+  while (waiting != 0u) {
     if (count_step()) {
       break;
     }
-    let triangle = load_triangle(i);
-    let hit = intersect_triangle(setup, triangle.v0, triangle.v1, triangle.v2);
-    let eligible = i != ray.start && i != ray.end;
-    if (eligible && hit.t > 0.0 && (hit.t < best.t || (hit.t == best.t && i < best.triangle))) {
+    let second = (waiting & 1u) == 0u;
+    waiting &= 2u;
+    if (second) {
+      waiting = 0u;
+    }
+    let id = 2u * index + select(0u, 1u, second);
+    let hit = refined_hit(fan_triangle(fan, second));
+    let eligible = id != ray.start && id != ray.end;
+    if (eligible && hit.t > 0.0 && (hit.t < best.t || (hit.t == best.t && id < best.triangle))) {
       if (HAS_ALPHA || HAS_SINGLE_SIDED) {
-        if (!accept_hit(triangle, i, hit.b, hit.back_face, camera_ray, seed)) {
+        if (!accept_hit(pair_triangle(e, second), hit.b, hit.back_face, camera_ray, seed)) {
           continue;
         }
       }
-      best = Hit(hit.t, i, hit.b, hit.back_face);
+      best = Hit(hit.t, id, hit.b, hit.back_face);
     }
   }
   return best;
 }
 
-// The closest hit, or with any_hit the first that is found.
-fn trace(ray: Ray, any_hit: bool, camera_ray: bool, seed: u32) -> Hit {
-  let setup = ray_setup(ray.origin, ray.direction);
-  let boxes = box_setup(ray);
+// Whether a child of the group may hold a closer hit.
+fn is_worth_it(group: Group, t_max: f32) -> bool {
+  return group.slots != 0u && bitcast<f32>(group.entry) <= t_max * FAR_SLACK;
+}
+
+fn trace(query: Query) -> Answer {
+  var answer = Answer(miss(query.ray), false);
+  if (!query.has_ray && !query.has_shadow) {
+    return answer;
+  }
+  var is_shadow = query.has_shadow;
+  var ray = query.ray;
+  if (is_shadow) {
+    ray = query.shadow;
+  }
+  var setup = ray_setup(ray.origin, ray.direction);
+  var boxes = box_setup(ray);
+  var best = miss(ray);
+  var group = Group(0u, 0u, 0u);
   var stack_size = 0u;
-  var best = Hit(ray.t_max, MISS, vec3f(0.0), false);
   var current = 0u;
-  loop {
+  var searching = true;
+  while (searching) {
     if (count_step()) {
       break;
     }
-    // Step down to the nearer child that is hit; the other has to wait.
+    let index = current & ~LEAF_FLAG;
+    let e = load_element(index);
     if (current < LEAF_FLAG) {
-      let next = visit_node(load_node(current), boxes, best.t);
-      current = next.near;
-      if (next.far != NOTHING) {
-        traversal_stack[stack_size] = next.far;
-        stack_size += 1u;
+      let children = visit_node(e, boxes, best.t);
+      if (children.slots != 0u) {
+        if (group.slots != 0u) {
+          stack_write(stack_size, group);
+          stack_size += 1u;
+        }
+        group = children;
+      }
+    } else {
+      let camera_ray = query.camera_ray && !is_shadow;
+      best = test_pair(e, index, ray, setup, best, camera_ray, select(query.seed, query.shadow_seed, is_shadow));
+      if (is_shadow && best.triangle != MISS) {
+        group.slots = 0u;
+        stack_size = 0u;
       }
     }
-    // Test the triangles of a leaf.
-    if (current >= LEAF_FLAG && current != NOTHING) {
-      best = test_leaf(current, ray, setup, best, camera_ray, seed);
-      current = NOTHING;
-      if (any_hit && best.triangle != MISS) {
-        break;
+    // Go on with the children that were put aside last.
+    if (!is_worth_it(group, best.t)) {
+      group.slots = 0u;
+      while (stack_size > 0u) {
+        if (count_step()) {
+          break;
+        }
+        stack_size -= 1u;
+        if (bitcast<f32>(stack_read_entry(stack_size)) <= best.t * FAR_SLACK) {
+          group = stack_read(stack_size);
+          break;
+        }
       }
     }
-    // Take up the child that was put aside last.
-    if (current == NOTHING) {
-      if (stack_size == 0u) {
-        break;
-      }
-      stack_size -= 1u;
-      current = traversal_stack[stack_size];
+    let slot = (group.slots & 15u) - 1u;
+    current = ((group.header >> 4u) + slot) | select(LEAF_FLAG, 0u, slot < (group.header & 15u));
+    if (group.slots != 0u) {
+      group.slots >>= 4u;
+    } else if (is_shadow) {
+      // The shadow ray is answered: take up the other one.
+      answer.occluded = best.triangle != MISS;
+      is_shadow = false;
+      searching = query.has_ray;
+      ray = query.ray;
+      setup = ray_setup(ray.origin, ray.direction);
+      boxes = box_setup(ray);
+      best = miss(ray);
+      group.slots = 0u;
+      current = 0u;
+    } else {
+      searching = false;
     }
   }
-  return best;
-}
-
-// The closest hit of a ray; hit.triangle is MISS where there is none.
-fn intersect(ray: Ray, camera_ray: bool, seed: u32) -> Hit {
-  if (COUNT_RAYS) {
-    closest_rays += 1u;
-  }
-  return trace(ray, false, camera_ray, seed);
-}
-
-// Whether anything that accept_hit accepts is hit at 0 < t <= t_max.
-fn occluded(ray: Ray, seed: u32) -> bool {
-  if (COUNT_RAYS) {
-    any_rays += 1u;
-  }
-  return trace(ray, true, false, seed).triangle != MISS;
+  answer.hit = best;
+  return answer;
 }

@@ -95,27 +95,61 @@ fn signs_differ(e: vec3f) -> bool {
   return (e.x < 0.0 || e.y < 0.0 || e.z < 0.0) && (e.x > 0.0 || e.y > 0.0 || e.z > 0.0);
 }
 
-// Intersects the ray with a triangle, both sides; t is any positive number.
-fn intersect_triangle(setup: RaySetup, v0: vec3f, v1: vec3f, v2: vec3f) -> TriangleHit {
+// A triangle in the ray's own space.
+struct Sheared {
+  a: vec3f,
+  b: vec3f,
+  c: vec3f,
+}
+
+// The triangles (v0, v1, v2) and (v0, v2, v3) in the ray's own space, and whether their quick test
+// leaves them in the running: by signs that are certain most triangles end there.
+struct FanCandidates {
+  a: vec3f,
+  b: vec3f,
+  c: vec3f,
+  d: vec3f,
+  first: bool,
+  second: bool,
+  // Their edges, opposite to each vertex.
+  first_edges: vec3f,
+  second_edges: vec3f,
+}
+
+// The shared edge's value is found once: for the other triangle it has the other sign, exactly.
+fn fan_candidates(setup: RaySetup, v0: vec3f, v1: vec3f, v2: vec3f, v3: vec3f) -> FanCandidates {
   let a = exact_shear(setup, v0);
   let b = exact_shear(setup, v1);
   let c = exact_shear(setup, v2);
-  // Reject by signs that are certain: most triangles end here.
-  let quick = vec3f(exact_edge(c.xy, b.xy), exact_edge(a.xy, c.xy), exact_edge(b.xy, a.xy));
-  if (signs_differ(quick)) {
-    return triangle_miss();
-  }
-  // Decide the zeros, and find the values to nearly full precision.
+  let d = exact_shear(setup, v3);
+  return sheared_fan(a, b, c, d);
+}
+
+fn sheared_fan(a: vec3f, b: vec3f, c: vec3f, d: vec3f) -> FanCandidates {
+  let diagonal = exact_edge(a.xy, c.xy);
+  let first = vec3f(exact_edge(c.xy, b.xy), diagonal, exact_edge(b.xy, a.xy));
+  let second = vec3f(exact_edge(d.xy, c.xy), exact_edge(a.xy, d.xy), -diagonal);
+  return FanCandidates(a, b, c, d, !signs_differ(first), !signs_differ(second), first, second);
+}
+
+// One of the two triangles.
+fn fan_triangle(fan: FanCandidates, second: bool) -> Sheared {
+  return Sheared(fan.a, select(fan.b, fan.c, second), select(fan.c, fan.d, second));
+}
+
+// The hit of a triangle that its quick test left in the running, on both sides; t is any positive
+// number. Decides the zeros, and finds the values to nearly full precision.
+fn refined_hit(s: Sheared) -> TriangleHit {
   let edges = vec3f(
-    exact_edge_refined(c.xy, b.xy),
-    exact_edge_refined(a.xy, c.xy),
-    exact_edge_refined(b.xy, a.xy),
+    exact_edge_refined(s.c.xy, s.b.xy),
+    exact_edge_refined(s.a.xy, s.c.xy),
+    exact_edge_refined(s.b.xy, s.a.xy),
   );
   let determinant = (edges.x + edges.y) + edges.z;
   if (signs_differ(edges) || determinant == 0.0) {
     return triangle_miss();
   }
-  let t = exact_depth(edges, a, b, c) / determinant;
+  let t = exact_depth(edges, s.a, s.b, s.c) / determinant;
   if (t > 0.0) {
     return TriangleHit(t, edges / determinant, determinant < 0.0);
   }

@@ -1,5 +1,6 @@
 // The base colour of the first surface, linear. Zero where the camera sees no surface.
 
+#include "whole_path.wgsl"
 #include "material.wgsl"
 #include "sampler.wgsl"
 

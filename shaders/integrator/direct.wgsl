@@ -2,6 +2,6 @@
 
 #include "path.wgsl"
 
-fn Li(camera_ray: Ray, sampler: ptr<function, Sampler>) -> vec3f {
-    return path_Li(camera_ray, sampler, min(frame.max_depth, 2u), true, true);
-}
+const LIGHT_SAMPLES: bool = true;
+const BSDF_SAMPLES: bool = true;
+const MAX_EDGES: u32 = 2u;

@@ -3,6 +3,6 @@
 
 #include "path.wgsl"
 
-fn Li(camera_ray: Ray, sampler: ptr<function, Sampler>) -> vec3f {
-    return path_Li(camera_ray, sampler, frame.max_depth, false, true);
-}
+const LIGHT_SAMPLES: bool = false;
+const BSDF_SAMPLES: bool = true;
+const MAX_EDGES: u32 = 0xffffffffu;

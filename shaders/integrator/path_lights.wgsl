@@ -3,6 +3,6 @@
 
 #include "path.wgsl"
 
-fn Li(camera_ray: Ray, sampler: ptr<function, Sampler>) -> vec3f {
-    return path_Li(camera_ray, sampler, frame.max_depth, true, false);
-}
+const LIGHT_SAMPLES: bool = true;
+const BSDF_SAMPLES: bool = false;
+const MAX_EDGES: u32 = 0xffffffffu;

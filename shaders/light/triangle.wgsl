@@ -1,8 +1,8 @@
 // Emissive triangles, sampled uniformly over their area.
 
 // A point on the triangle, as seen from `s`.
-fn light_triangle_sample(s: Surface, index: u32, u: vec2f) -> LightSample {
-    let triangle = load_triangle(index);
+fn light_triangle_sample(s: Surface, id: u32, u: vec2f) -> LightSample {
+    let triangle = load_triangle(id);
     let b = sample_triangle_uniform(u);
     let position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
     let cross_edges = triangle_cross(triangle);
@@ -16,10 +16,10 @@ fn light_triangle_sample(s: Surface, index: u32, u: vec2f) -> LightSample {
     if (distance == 0.0 || cos_light == 0.0 || (cos_light < 0.0 && !two_sided)) {
         return no_light_sample();
     }
-    let emitted = light_triangle_radiance(triangle, index, b) * coverage(triangle, index, b);
+    let emitted = light_triangle_radiance(triangle, b) * coverage(triangle, b);
     let pdf = light_triangle_pdf(distance, abs(cos_light), 0.5 * cross_length);
     var sample = no_light_sample();
-    sample.triangle = index;
+    sample.triangle = id;
     sample.wi = wi;
     sample.weight = emitted / pdf;
     sample.pdf = pdf;
@@ -35,11 +35,11 @@ fn light_triangle_pdf(distance: f32, cos_light: f32, area: f32) -> f32 {
     return (distance / area) * (distance / cos_light);
 }
 
-fn light_triangle_radiance(triangle: Triangle, index: u32, b: vec3f) -> vec3f {
+fn light_triangle_radiance(triangle: Triangle, b: vec3f) -> vec3f {
     var uv0 = vec2f(0.0);
     var uv1 = vec2f(0.0);
     if (HAS_EMISSIVE_TEXTURE) {
-        let uv = texture_coordinates(index, b);
+        let uv = texture_coordinates(triangle.index, b);
         uv0 = uv.xy;
         uv1 = uv.zw;
     }

@@ -1,32 +1,27 @@
 //! How good a tree is.
 
 use super::Bvh;
-use super::build::NODE_COST;
 use crate::geometry::Aabb;
 
 impl Bvh {
-    /// The surface area heuristic: node steps and triangle tests that a random long ray through the
-    /// root's box is expected to cost, in triangle tests. 0 for a root without area.
+    /// The surface area heuristic: elements that a random long line through the root's box is
+    /// expected to load, nodes and pairs alike. 0 for a root without area.
     pub fn sah_cost(&self) -> f64 {
-        let root = self.nodes.first().map_or(Aabb::EMPTY, |node| {
-            let [left, right] = node.children();
-            left.bounds.union(right.bounds)
-        });
-        let area = root.half_area();
-        if area == 0.0 {
-            return 0.0;
-        }
-        let children = self.nodes.iter().flat_map(|node| node.children());
-        let cost = |count: u32| {
-            if count == 0 {
-                NODE_COST
-            } else {
-                f64::from(count)
+        let mut area = 0.0;
+        let mut root = Aabb::EMPTY;
+        let mut waiting = vec![0];
+        while let Some(index) = waiting.pop() {
+            let node = self.elements[index as usize].decode();
+            for child in 0..node.children {
+                let bounds = node.child_box(child as usize);
+                area += bounds.half_area();
+                if index == 0 {
+                    root = root.union(bounds);
+                }
             }
-        };
-        let sum: f64 = children
-            .map(|child| child.bounds.half_area() / area * cost(child.count))
-            .sum();
-        NODE_COST + sum
+            waiting.extend(node.first..node.first + node.inner);
+        }
+        let whole = root.half_area();
+        if whole > 0.0 { 1.0 + area / whole } else { 0.0 }
     }
 }

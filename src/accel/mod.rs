@@ -1,70 +1,64 @@
-//! The bounding volume hierarchy: a binary tree whose nodes hold the boxes of both children.
+//! The bounding volume hierarchy: pairs of triangles below nodes of up to eight children.
 //!
-//! [`Bvh::build`] makes it (binned SAH, in parallel), [`Bvh::validate`] proves its structure,
-//! [`Bvh::sah_cost`] rates it, and [`Bvh::intersect`] and [`Bvh::occluded`] are the oracle of
-//! `shaders/accel/bvh.wgsl`, which does the same operations in the same order.
+//! [`Bvh::build`] matches triangles into pairs ([`pair`]), builds a binary tree over them
+//! ([`binary`]) and collapses it into wide nodes with boxes of 8 bits a coordinate ([`element`]).
+//! [`Bvh::validate`] proves its structure, [`Bvh::sah_cost`] rates it, and [`Bvh::intersect`] and
+//! [`Bvh::occluded`] are the oracle of `shaders/accel/bvh.wgsl`, which does the same operations in
+//! the same order.
 
 pub mod binary;
-mod bins;
-mod build;
 mod cost;
-mod node;
+pub mod element;
+pub mod pair;
 mod primitive;
 mod traverse;
 mod validate;
+mod wide;
 
 pub use binary::Preset;
-pub use node::BvhNode;
+pub use element::Element;
 pub use primitive::Primitive;
-pub use traverse::{FAR_SLACK, Hit};
-pub use validate::{BvhError, Side};
+pub use traverse::{FAR_SLACK, Hit, Steps};
+pub use validate::BvhError;
 
 /// Most stack entries that any tree of [`Bvh::build`] makes a traversal use.
-pub const MAX_DEPTH: u32 = 64;
+pub const MAX_DEPTH: u32 = binary::MAX_BINARY_DEPTH + 1;
 
-/// Most triangles in a leaf: the shader's stack keeps a leaf's count in 4 bits.
-pub const MAX_LEAF_SIZE: u32 = 15;
-
-/// Most triangles in a tree: the shader's stack keeps a leaf's first triangle in 27 bits.
+/// Most triangles in a tree: with no two of them in a pair, and a node for every pair at worst, its
+/// elements can still be counted ([`element::MAX_ELEMENTS`]).
 pub const MAX_TRIANGLES: usize = (1 << 27) - 1;
 
 /// What [`Bvh::build`] may be told.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct BuildOptions {
-    /// How much time the build may take for a better tree.
+    /// How much time to take for a better tree.
     pub preset: Preset,
-    /// Most triangles in a leaf, 1 to [`MAX_LEAF_SIZE`]; others are taken as the nearest of these.
-    pub max_leaf_size: u32,
-    /// Bins an axis, 2 to 32; others are taken as the nearest of these.
-    pub bins: usize,
-}
-
-impl Default for BuildOptions {
-    fn default() -> BuildOptions {
-        BuildOptions {
-            preset: Preset::default(),
-            max_leaf_size: 4,
-            bins: 16,
-        }
-    }
 }
 
 /// A bounding volume hierarchy over triangles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bvh {
-    /// Node 0 is the root, a node comes before its children. There is always a root.
-    pub nodes: Vec<BvhNode>,
-    /// Position in the order of the leaves -> index of the triangle given to [`Bvh::build`].
-    pub order: Vec<u32>,
-    /// Stack entries that a traversal needs: the nodes on the longest way down.
+    /// Nodes and pairs; element 0 is the root, a node; a node comes before its children.
+    pub elements: Vec<Element>,
+    /// The triangles in the order of the tree.
+    pub order: Vec<Placed>,
+    /// Stack entries that a traversal needs: the nodes on the longest way down. 0 for a list: all
+    /// elements are pairs, each to be tested by every ray.
     pub depth: u32,
 }
 
+/// A triangle of the input and its place in the tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Placed {
+    /// Its index in the input, and which of its vertices comes first in the tree.
+    pub turned: pair::Turned,
+    /// [`Hit::triangle`] of a hit on it.
+    pub id: u32,
+}
+
 impl Bvh {
-    /// Copies a per-triangle array into the order of the leaves, which traversal expects.
-    ///
-    /// `items` has an entry for each triangle that the tree was built of.
-    pub fn reorder<T: Copy>(&self, items: &[T]) -> Vec<T> {
-        self.order.iter().map(|&i| items[i as usize]).collect()
+    /// Position in [`Bvh::order`] of the triangle of a hit.
+    pub fn position(&self, id: u32) -> usize {
+        (self.elements[id as usize / 2].first_triangle() + (id & 1)) as usize
     }
 }

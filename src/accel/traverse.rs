@@ -11,34 +11,34 @@
 //! a box whose triangle ties with the closest hit is entered in whatever order boxes come, and
 //! the hit does not depend on that order.
 
-use super::{Bvh, BvhNode, MAX_DEPTH};
+use super::element::{Element, WIDTH};
+use super::{Bvh, MAX_DEPTH};
 #[cfg(doc)]
 use crate::geometry::Aabb;
 use crate::geometry::Ray;
-use crate::geometry::triangle::{RaySetup, intersect_triangle};
-use glam::{BVec3, Vec3};
+use crate::geometry::triangle::{RaySetup, fan_candidates, refined_hit};
+use glam::Vec3;
 
 /// Factor on the far end of a box's interval, 1 + 2⁻¹⁸. An exact f32.
 pub const FAR_SLACK: f32 = 1.000_003_8;
 
-/// A direction component nearer to 0 than this is taken as this, with its sign, for the reciprocal.
-const SMALLEST_DIRECTION: f32 = 1e-36;
+/// A direction component nearer to 0 than this share of the largest is taken as this for the
+/// reciprocal, 2⁻⁶⁰: no box can tell, and nothing overflows.
+const SMALLEST_SHARE: f32 = 8.673_617_4e-19;
 
 /// No triangle.
 const MISS: u32 = u32::MAX;
 
-/// Marks a reference to a leaf: 4 bits below it hold the count, 27 the first triangle.
+/// Marks a reference to a pair.
 const LEAF_FLAG: u32 = 1 << 31;
-
-/// The reference to nothing: that of a leaf of 15 triangles at 2²⁷ - 1, where no leaf can begin.
-const NOTHING: u32 = u32::MAX;
 
 /// The closest hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     /// Ray parameter, 0 < t ≤ `t_max`.
     pub t: f32,
-    /// Position of the triangle in the tree's order.
+    /// The triangle: 2 × the index of its pair's element, + 1 for the second of the pair
+    /// ([`Bvh::position`]).
     pub triangle: u32,
     /// Barycentric coordinates of v0, v1, v2.
     pub b: [f32; 3],
@@ -46,78 +46,85 @@ pub struct Hit {
     pub back_face: bool,
 }
 
+/// What a traversal did.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Steps {
+    /// Nodes whose children's boxes were tested.
+    pub nodes: u64,
+    /// Pairs that were tested.
+    pub pairs: u64,
+}
+
 /// What the box test needs of a ray.
 struct BoxSetup {
     origin: Vec3,
     inverse: Vec3,
-    forward: BVec3,
 }
 
 impl BoxSetup {
     fn new(ray: &Ray) -> BoxSetup {
         let d = ray.direction;
-        let inverse = Vec3::new(reciprocal(d.x), reciprocal(d.y), reciprocal(d.z));
+        let least = d.abs().max_element() * SMALLEST_SHARE;
+        let inverse = |d: f32| {
+            1.0 / if d.abs() < least {
+                least.copysign(d)
+            } else {
+                d
+            }
+        };
         BoxSetup {
             origin: ray.origin,
-            inverse,
-            forward: inverse.cmpge(Vec3::ZERO),
+            inverse: Vec3::new(inverse(d.x), inverse(d.y), inverse(d.z)),
         }
     }
 }
 
-/// 1 / d, finite.
-fn reciprocal(d: f32) -> f32 {
-    let smallest = if d >= 0.0 {
-        SMALLEST_DIRECTION
-    } else {
-        -SMALLEST_DIRECTION
-    };
-    let safe = if d.abs() < SMALLEST_DIRECTION {
-        smallest
-    } else {
-        d
-    };
-    1.0 / safe
+/// Children that are hit and wait: a node's last header word, their slots + 1 in 4 bits each with
+/// the next one lowest, and the bits of a t that none of them is entered before.
+#[derive(Debug, Clone, Copy, Default)]
+struct Group {
+    header: u32,
+    slots: u32,
+    entry: u32,
 }
 
-/// Where the ray enters a box, at least 0; -1 where it misses it or enters beyond `t_max`.
-///
-/// Near and far faces are chosen by the ray's sign, so that an inverted box is missed.
-fn box_entry(setup: &BoxSetup, min: [f32; 3], max: [f32; 3], t_max: f32) -> f32 {
-    let (min, max) = (Vec3::from_array(min), Vec3::from_array(max));
-    let near = (Vec3::select(setup.forward, min, max) - setup.origin) * setup.inverse;
-    let far = (Vec3::select(setup.forward, max, min) - setup.origin) * setup.inverse;
-    let entry = near.x.max(near.y).max(near.z.max(0.0));
-    let exit = far.x.min(far.y).min(far.z.min(t_max)) * FAR_SLACK;
-    if entry <= exit { entry } else { -1.0 }
-}
+impl Group {
+    /// Whether there is a child that may hold a closer hit.
+    fn is_worth_it(&self, t_max: f32) -> bool {
+        self.slots != 0 && f32::from_bits(self.entry) <= t_max * FAR_SLACK
+    }
 
-/// What the stack keeps of a child.
-fn reference(index: u32, count: u32) -> u32 {
-    if count > 0 {
-        LEAF_FLAG | (count << 27) | index
-    } else {
-        index
+    /// The reference to the next child, which is taken out.
+    fn take(&mut self) -> u32 {
+        let slot = (self.slots & 15) - 1;
+        self.slots >>= 4;
+        let element = (self.header >> 4) + slot;
+        if slot < (self.header & 15) {
+            element
+        } else {
+            element | LEAF_FLAG
+        }
     }
 }
 
 impl Bvh {
-    /// The closest hit; at equal t that with the smaller position in the tree.
+    /// The closest hit; at equal t that with the smaller number.
     ///
-    /// `triangles` are in the tree's order ([`Bvh::reorder`]); the tree has passed [`Bvh::validate`].
-    pub fn intersect(&self, triangles: &[[Vec3; 3]], ray: &Ray) -> Option<Hit> {
-        self.trace(triangles, ray, false)
+    /// The tree has passed [`Bvh::validate`].
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        self.trace(ray, false, &mut Steps::default())
     }
 
     /// Whether anything is hit at 0 < t ≤ `t_max`: `intersect(..).is_some()`, but faster.
-    pub fn occluded(&self, triangles: &[[Vec3; 3]], ray: &Ray) -> bool {
-        self.trace(triangles, ray, true).is_some()
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.trace(ray, true, &mut Steps::default()).is_some()
     }
 
-    fn trace(&self, triangles: &[[Vec3; 3]], ray: &Ray, any_hit: bool) -> Option<Hit> {
+    /// [`Bvh::intersect`], or with `any_hit` the first hit found, which counts its steps.
+    pub fn trace(&self, ray: &Ray, any_hit: bool, steps: &mut Steps) -> Option<Hit> {
         let setup = RaySetup::new(ray.origin, ray.direction);
         let box_setup = BoxSetup::new(ray);
-        let mut stack = [0u32; MAX_DEPTH as usize];
+        let mut stack = [Group::default(); MAX_DEPTH as usize];
         let mut stack_size = 0;
         let mut best = Hit {
             t: ray.t_max,
@@ -125,72 +132,87 @@ impl Bvh {
             b: [0.0; 3],
             back_face: false,
         };
+        let mut group = Group::default();
         let mut current = 0;
-        loop {
-            // Step down to the nearer child that is hit; the other has to wait.
+        'traversal: loop {
+            let element = &self.elements[(current & !LEAF_FLAG) as usize];
             if current < LEAF_FLAG {
-                let (near, far) = visit(&self.nodes[current as usize], &box_setup, best.t);
-                current = near;
-                if far != NOTHING {
-                    stack[stack_size] = far;
-                    stack_size += 1;
+                steps.nodes += 1;
+                let children = visit(element, &box_setup, best.t);
+                if children.slots != 0 {
+                    if group.slots != 0 {
+                        stack[stack_size] = group;
+                        stack_size += 1;
+                    }
+                    group = children;
                 }
-            }
-            // Test the triangles of a leaf.
-            if current >= LEAF_FLAG && current != NOTHING {
-                test_leaf(current, triangles, &setup, &mut best);
-                current = NOTHING;
+            } else {
+                steps.pairs += 1;
+                test_pair(element, current & !LEAF_FLAG, &setup, &mut best);
                 if any_hit && best.triangle != MISS {
                     break;
                 }
             }
-            // Take up the child that was put aside last.
-            if current == NOTHING {
+            // Go on with the children that were put aside last.
+            while !group.is_worth_it(best.t) {
                 if stack_size == 0 {
-                    break;
+                    break 'traversal;
                 }
                 stack_size -= 1;
-                current = stack[stack_size];
+                group = stack[stack_size];
             }
+            current = group.take();
         }
         (best.triangle != MISS).then_some(best)
     }
 }
 
-/// Tests both children of a node; returns those that are hit, the nearer one first.
-fn visit(node: &BvhNode, setup: &BoxSetup, t_max: f32) -> (u32, u32) {
-    let left_entry = box_entry(setup, node.left_min, node.left_max, t_max);
-    let right_entry = box_entry(setup, node.right_min, node.right_max, t_max);
-    let left = if left_entry < 0.0 {
-        NOTHING
-    } else {
-        reference(node.left, node.left_count)
-    };
-    let right = if right_entry < 0.0 {
-        NOTHING
-    } else {
-        reference(node.right, node.right_count)
-    };
-    let right_first = left == NOTHING || (right != NOTHING && right_entry < left_entry);
-    if right_first {
-        (right, left)
-    } else {
-        (left, right)
+/// Tests the children of a node; those that are hit, the nearest first.
+fn visit(element: &Element, setup: &BoxSetup, t_max: f32) -> Group {
+    let node = element.decode();
+    let start = (node.origin - setup.origin) * setup.inverse;
+    let step = node.step * setup.inverse;
+    let mut keys = [0; WIDTH];
+    for (slot, key) in keys.iter_mut().enumerate() {
+        let t = |plane: usize| {
+            let axis = plane / 2;
+            start[axis] + f32::from(node.planes[plane][slot]) * step[axis]
+        };
+        // Near and far planes are chosen by the ray's sign, so that an inverted box is missed.
+        let near = |axis: usize| t(2 * axis + usize::from(setup.inverse[axis] < 0.0));
+        let far = |axis: usize| t(2 * axis + usize::from(setup.inverse[axis] >= 0.0));
+        let entry = near(0).max(near(1)).max(near(2).max(0.0));
+        let exit = far(0).min(far(1)).min(far(2).min(t_max)) * FAR_SLACK;
+        let is_hit = entry <= exit && (slot as u32) < node.children;
+        let nearness = if is_hit { entry.to_bits() } else { u32::MAX } & !15;
+        *key = nearness | if is_hit { slot as u32 + 1 } else { 0 };
+    }
+    keys.sort_unstable();
+    let slots = keys
+        .iter()
+        .rev()
+        .fold(0, |slots, key| slots << 4 | key & 15);
+    Group {
+        header: element.words[3],
+        slots,
+        entry: keys[0] & !15,
     }
 }
 
-/// Tests the triangles of a leaf and keeps the closest hit.
-fn test_leaf(leaf: u32, triangles: &[[Vec3; 3]], setup: &RaySetup, best: &mut Hit) {
-    let first = leaf & 0x07ff_ffff;
-    let count = (leaf >> 27) & 15;
-    for i in first..first + count {
-        let [v0, v1, v2] = triangles[i as usize];
-        if let Some(hit) = intersect_triangle(setup, v0, v1, v2)
-            && (hit.t < best.t || (hit.t == best.t && i < best.triangle))
+/// Tests both triangles of a pair and keeps the closest hit.
+fn test_pair(element: &Element, index: u32, setup: &RaySetup, best: &mut Hit) {
+    let (triangles, candidates) = fan_candidates(setup, element.vertices());
+    for slot in 0..2 {
+        if !candidates[slot] {
+            continue;
+        }
+        let triangle = 2 * index + slot as u32;
+        if let Some(hit) = refined_hit(&triangles[slot])
+            && (hit.t < best.t || (hit.t == best.t && triangle < best.triangle))
         {
             *best = Hit {
                 t: hit.t,
-                triangle: i,
+                triangle,
                 b: hit.b,
                 back_face: hit.back_face,
             };

@@ -1,31 +1,12 @@
 //! The proof that a tree is one that a traversal may trust: the device checks nothing.
 
-use super::node::{BvhNode, Child};
-use super::{Bvh, MAX_DEPTH, MAX_LEAF_SIZE, MAX_TRIANGLES};
+use super::element::Node;
+use super::{Bvh, MAX_DEPTH, MAX_TRIANGLES, Placed};
 use crate::geometry::Aabb;
 use glam::Vec3;
-use std::fmt;
 use thiserror::Error;
 
-/// Which child of a node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// The first.
-    Left,
-    /// The second.
-    Right,
-}
-
-impl fmt::Display for Side {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Side::Left => "left",
-            Side::Right => "right",
-        })
-    }
-}
-
-/// What is wrong with a tree; `node` is an index into [`Bvh::nodes`].
+/// What is wrong with a tree; `node` is an index into [`Bvh::elements`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[allow(missing_docs)] // The messages say what the fields are.
 pub enum BvhError {
@@ -39,75 +20,66 @@ pub enum BvhError {
         "position {position} of the order names triangle {triangle}, which is out of range or named before"
     )]
     Order { position: usize, triangle: u32 },
-    #[error("node {node}: its {side} child is node {child}, but there are {nodes}")]
-    NodeIndex {
+    #[error(
+        "position {position} of the order names triangle {id} of the pairs, which is out of range, named before, or not that pair's"
+    )]
+    Place { position: usize, id: u32 },
+    #[error("node {node}: its children are elements {first} to {last}, but there are {elements}")]
+    Children {
         node: usize,
-        side: Side,
-        child: u32,
-        nodes: usize,
+        first: u64,
+        last: u64,
+        elements: usize,
+    },
+    #[error("node {node}: {inner} of its {children} children are said to be nodes")]
+    InnerCount {
+        node: usize,
+        inner: u32,
+        children: u32,
     },
     #[error(
-        "node {node}: its {side} child is node {child}, which another way leads to as well (a cycle, or a shared child)"
+        "node {node}: its child {child} is also another's (a cycle, or a shared child), or the root"
     )]
-    SharedNode { node: usize, side: Side, child: u32 },
-    #[error("node {node} cannot be reached from the root")]
-    Unreachable { node: usize },
-    #[error("node {node}: its {side} child is absent, but its box is not the inverted one")]
-    AbsentBox { node: usize, side: Side },
+    SharedChild { node: usize, child: u32 },
+    #[error("element {element} cannot be reached from the root")]
+    Unreachable { element: usize },
     #[error(
-        "node {node}: its {side} leaf has triangles {first} to {first} + {count}, beyond the last, {triangles}"
+        "node {node}: its child {child} is a pair whose vertices are not those of its triangles"
     )]
-    LeafRange {
-        node: usize,
-        side: Side,
-        first: u32,
-        count: u32,
-        triangles: usize,
-    },
-    #[error("node {node}: its {side} leaf has {count} triangles, more than {MAX_LEAF_SIZE}")]
-    LeafSize { node: usize, side: Side, count: u32 },
-    #[error(
-        "node {node}: its {side} leaf has the triangle at position {position}, which another leaf has too"
-    )]
-    TriangleTwice {
-        node: usize,
-        side: Side,
-        position: u32,
-    },
-    #[error("no leaf has the triangle at position {position}")]
-    TriangleMissing { position: usize },
-    #[error("node {node}: the box of its {side} child does not contain all of its triangles")]
-    Box { node: usize, side: Side },
+    Vertices { node: usize, child: u32 },
+    #[error("node {node}: the box of its child {child} does not contain all of its triangles")]
+    Box { node: usize, child: u32 },
     #[error(
         "the tree says that a traversal needs {depth} stack entries, but it needs {needed} (at most {MAX_DEPTH} are allowed)"
     )]
     Depth { depth: u32, needed: u32 },
 }
 
-const SIDES: [Side; 2] = [Side::Left, Side::Right];
-
-/// The two children with their names.
-fn sides(node: &BvhNode) -> impl Iterator<Item = (Side, Child)> {
-    SIDES.into_iter().zip(node.children())
+/// What is known of an element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Found {
+    No,
+    Node,
+    Pair,
 }
 
 impl Bvh {
     /// Checks everything that a traversal relies on, in O(n): indices in range, no cycles, every
-    /// triangle in exactly one leaf, every box around the exact bounds of its triangles, the depth.
+    /// triangle in exactly one pair, every box around the exact bounds of its triangles, the depth.
     /// `triangles` are those that the tree was built of, in their own order.
     pub fn validate(&self, triangles: &[[Vec3; 3]]) -> Result<(), BvhError> {
-        if self.nodes.is_empty() {
+        if self.elements.is_empty() {
             return Err(BvhError::NoRoot);
         }
-        self.check_order(triangles.len())?;
-        self.check_leaves()?;
-        let way = self.walk()?;
+        self.check_order(triangles)?;
+        let (way, found) = self.walk()?;
+        self.check_places(&found)?;
         self.check_depth(&way)?;
         self.check_boxes(&way, triangles)
     }
 
-    fn check_order(&self, triangles: usize) -> Result<(), BvhError> {
-        let order = self.order.len();
+    fn check_order(&self, triangles: &[[Vec3; 3]]) -> Result<(), BvhError> {
+        let (order, triangles) = (self.order.len(), triangles.len());
         if order != triangles {
             return Err(BvhError::OrderLength { order, triangles });
         }
@@ -115,58 +87,55 @@ impl Bvh {
             return Err(BvhError::TooManyTriangles { triangles });
         }
         let mut seen = vec![false; triangles];
-        for (position, &triangle) in self.order.iter().enumerate() {
+        for (position, placed) in self.order.iter().enumerate() {
+            let triangle = placed.turned.triangle;
             match seen.get_mut(triangle as usize) {
-                Some(seen) if !*seen => *seen = true,
+                Some(seen) if !*seen && placed.turned.first < 3 => *seen = true,
                 _ => return Err(BvhError::Order { position, triangle }),
             }
         }
         Ok(())
     }
 
-    fn check_leaves(&self) -> Result<(), BvhError> {
-        let mut seen = vec![false; self.order.len()];
-        for (node, children) in self.nodes.iter().map(sides).enumerate() {
-            for (side, child) in children.filter(|(_, child)| child.count > 0) {
-                mark_leaf(&mut seen, node, side, &child)?;
-            }
-        }
-        match seen.iter().position(|seen| !seen) {
-            Some(position) => Err(BvhError::TriangleMissing { position }),
-            None => Ok(()),
-        }
-    }
-
-    /// All nodes, each after its parent, with their level (the root's is 1).
-    fn walk(&self) -> Result<Vec<(usize, u32)>, BvhError> {
-        let nodes = self.nodes.len();
-        let mut seen = vec![false; nodes];
-        seen[0] = true;
+    /// All nodes, each after its parent, with their level (the root's is 1), and what each element is.
+    fn walk(&self) -> Result<(Vec<(usize, u32)>, Vec<Found>), BvhError> {
+        let elements = self.elements.len();
+        let mut found = vec![Found::No; elements];
+        found[0] = Found::Node;
         let mut way = vec![(0, 1)];
         let mut next = 0;
         while let Some(&(node, level)) = way.get(next) {
             next += 1;
-            for (side, child) in sides(&self.nodes[node]).filter(|(_, c)| c.is_inner()) {
-                let child = child.index;
-                match seen.get_mut(child as usize) {
-                    None => {
-                        return Err(BvhError::NodeIndex {
-                            node,
-                            side,
-                            child,
-                            nodes,
-                        });
-                    }
-                    Some(true) => return Err(BvhError::SharedNode { node, side, child }),
-                    Some(seen) => *seen = true,
+            let decoded = self.elements[node].decode();
+            check_children(node, &decoded, elements)?;
+            for slot in 0..decoded.children {
+                let child = decoded.first + slot;
+                let kind = &mut found[child as usize];
+                if *kind != Found::No {
+                    return Err(BvhError::SharedChild { node, child });
                 }
-                way.push((child as usize, level + 1));
+                *kind = Found::Pair;
+                if slot < decoded.inner {
+                    *kind = Found::Node;
+                    way.push((child as usize, level + 1));
+                }
             }
         }
-        match seen.iter().position(|seen| !seen) {
-            Some(node) => Err(BvhError::Unreachable { node }),
-            None => Ok(way),
+        match found.iter().position(|&kind| kind == Found::No) {
+            Some(element) => Err(BvhError::Unreachable { element }),
+            None => Ok((way, found)),
         }
+    }
+
+    /// Every triangle's number leads to a pair, which leads back.
+    fn check_places(&self, found: &[Found]) -> Result<(), BvhError> {
+        for (position, &Placed { id, .. }) in self.order.iter().enumerate() {
+            let is_pair = found.get(id as usize / 2) == Some(&Found::Pair);
+            if !is_pair || self.position(id) != position {
+                return Err(BvhError::Place { position, id });
+            }
+        }
+        Ok(())
     }
 
     fn check_depth(&self, way: &[(usize, u32)]) -> Result<(), BvhError> {
@@ -180,18 +149,17 @@ impl Bvh {
 
     /// Goes up from the leaves: children come after their parents on the way.
     fn check_boxes(&self, way: &[(usize, u32)], triangles: &[[Vec3; 3]]) -> Result<(), BvhError> {
-        let mut exact = vec![Aabb::EMPTY; self.nodes.len()];
+        let mut exact = vec![Aabb::EMPTY; self.elements.len()];
         for &(node, _) in way.iter().rev() {
-            for (side, child) in sides(&self.nodes[node]) {
-                let bounds = match child.inner_index() {
-                    Some(index) => exact[index],
-                    None => self.leaf_bounds(&child, triangles),
-                };
-                if child.is_absent() && child.bounds != Aabb::EMPTY {
-                    return Err(BvhError::AbsentBox { node, side });
+            let decoded = self.elements[node].decode();
+            for slot in 0..decoded.children {
+                let child = decoded.first + slot;
+                if slot >= decoded.inner {
+                    exact[child as usize] = self.pair_bounds(node, child, triangles)?;
                 }
-                if !child.bounds.contains(&bounds) {
-                    return Err(BvhError::Box { node, side });
+                let bounds = exact[child as usize];
+                if !decoded.child_box(slot as usize).contains(&bounds) {
+                    return Err(BvhError::Box { node, child });
                 }
                 exact[node] = exact[node].union(bounds);
             }
@@ -199,41 +167,60 @@ impl Bvh {
         Ok(())
     }
 
-    fn leaf_bounds(&self, leaf: &Child, triangles: &[[Vec3; 3]]) -> Aabb {
-        let first = leaf.index as usize;
-        let order = &self.order[first..first + leaf.count as usize];
-        order.iter().fold(Aabb::EMPTY, |bounds, &triangle| {
-            bounds.union(Aabb::from_points(&triangles[triangle as usize]))
-        })
+    /// The exact bounds of a pair's triangles, whose vertices must be those of the input; of a pair
+    /// in no triangle's place, the one of an empty tree, nothing.
+    fn pair_bounds(
+        &self,
+        node: usize,
+        pair: u32,
+        triangles: &[[Vec3; 3]],
+    ) -> Result<Aabb, BvhError> {
+        let element = &self.elements[pair as usize];
+        let is_mine = |id: u32| {
+            let position = element.first_triangle() as usize + (id & 1) as usize;
+            self.order.get(position).filter(|placed| placed.id == id)
+        };
+        let mut bounds = Aabb::EMPTY;
+        for (slot, held) in element.triangles().into_iter().enumerate() {
+            let Some(placed) = is_mine(2 * pair + slot as u32) else {
+                // No triangle: nothing that a ray can hit may be there.
+                if held[0] != held[2] {
+                    return Err(BvhError::Vertices { node, child: pair });
+                }
+                continue;
+            };
+            let turned = placed.turned;
+            if held != turned.corners(triangles[turned.triangle as usize]) {
+                return Err(BvhError::Vertices { node, child: pair });
+            }
+            bounds = bounds.union(Aabb::from_points(&held));
+        }
+        Ok(bounds)
     }
 }
 
-fn mark_leaf(seen: &mut [bool], node: usize, side: Side, leaf: &Child) -> Result<(), BvhError> {
-    let (first, count, triangles) = (leaf.index, leaf.count, seen.len());
-    if count > MAX_LEAF_SIZE {
-        return Err(BvhError::LeafSize { node, side, count });
+fn check_children(node: usize, decoded: &Node, elements: usize) -> Result<(), BvhError> {
+    let Node {
+        children,
+        inner,
+        first,
+        ..
+    } = *decoded;
+    if inner > children {
+        return Err(BvhError::InnerCount {
+            node,
+            inner,
+            children,
+        });
     }
-    for i in u64::from(first)..u64::from(first) + u64::from(count) {
-        match seen.get_mut(i as usize) {
-            None => {
-                return Err(BvhError::LeafRange {
-                    node,
-                    side,
-                    first,
-                    count,
-                    triangles,
-                });
-            }
-            Some(true) => {
-                let position = i as u32;
-                return Err(BvhError::TriangleTwice {
-                    node,
-                    side,
-                    position,
-                });
-            }
-            Some(seen) => *seen = true,
-        }
+    let last = u64::from(first) + u64::from(children) - 1;
+    if last >= elements as u64 {
+        return Err(BvhError::Children {
+            node,
+            first: u64::from(first),
+            last,
+            elements,
+        });
     }
     Ok(())
 }

@@ -101,13 +101,15 @@ fn signs_differ(e: Vec3) -> bool {
     (e.x < 0.0 || e.y < 0.0 || e.z < 0.0) && (e.x > 0.0 || e.y > 0.0 || e.z > 0.0)
 }
 
+/// A triangle in the ray's own space.
+pub type Sheared = [Vec3; 3];
+
 /// Intersects the ray of `setup` with a triangle, both sides; t is any positive number.
 ///
 /// A triangle that the ray sees edge-on, or that is degenerate, is missed.
 pub fn intersect_triangle(setup: &RaySetup, v0: Vec3, v1: Vec3, v2: Vec3) -> Option<TriangleHit> {
-    let a = exact_shear(setup, v0);
-    let b = exact_shear(setup, v1);
-    let c = exact_shear(setup, v2);
+    let sheared = [v0, v1, v2].map(|v| exact_shear(setup, v));
+    let [a, b, c] = sheared;
     // Reject by signs that are certain: most triangles end here.
     let quick = Vec3::new(
         exact_edge(xy(c), xy(b)),
@@ -117,7 +119,26 @@ pub fn intersect_triangle(setup: &RaySetup, v0: Vec3, v1: Vec3, v2: Vec3) -> Opt
     if signs_differ(quick) {
         return None;
     }
-    // Decide the zeros, and find the values to nearly full precision.
+    refined_hit(&sheared)
+}
+
+/// The triangles `(v0, v1, v2)` and `(v0, v2, v3)` of a fan in the ray's own space, and whether
+/// [`intersect_triangle`] would go on with each after its quick test. The shared edge's value is
+/// found once: for the other triangle it has the other sign, exactly.
+pub fn fan_candidates(setup: &RaySetup, vertices: [Vec3; 4]) -> ([Sheared; 2], [bool; 2]) {
+    let [a, b, c, d] = vertices.map(|v| exact_shear(setup, v));
+    let shared = exact_edge(xy(a), xy(c));
+    let first = Vec3::new(exact_edge(xy(c), xy(b)), shared, exact_edge(xy(b), xy(a)));
+    let second = Vec3::new(exact_edge(xy(d), xy(c)), exact_edge(xy(a), xy(d)), -shared);
+    (
+        [[a, b, c], [a, c, d]],
+        [!signs_differ(first), !signs_differ(second)],
+    )
+}
+
+/// The second half of [`intersect_triangle`]: decides the zeros, and finds the values to nearly
+/// full precision.
+pub fn refined_hit(&[a, b, c]: &Sheared) -> Option<TriangleHit> {
     let edges = Vec3::new(
         exact_edge_refined(xy(c), xy(b)),
         exact_edge_refined(xy(a), xy(c)),

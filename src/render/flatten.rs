@@ -4,9 +4,13 @@
 //! rounded to f32, so a scene far from the origin keeps its precision where the picture is taken.
 
 use glam::{DMat3, DVec3, Vec3};
+use rayon::prelude::*;
 
-use super::layout::{TRIANGLE_ALPHA, TRIANGLE_FLAT, TRIANGLE_SINGLE_SIDED, TRIANGLE_TANGENTS};
+use super::layout::{
+    MATERIAL_INDEX_MASK, TRIANGLE_ALPHA, TRIANGLE_FLAT, TRIANGLE_SINGLE_SIDED, TRIANGLE_TANGENTS,
+};
 use super::vertex_format::VertexFormat;
+use crate::accel::Placed;
 use crate::scene::{AlphaMode, Instance, Material, Mesh, Scene};
 
 /// All triangles of a scene, in the order of instances and their indices.
@@ -16,10 +20,8 @@ pub struct FlatGeometry {
     pub triangles: Vec<[Vec3; 3]>,
     /// Indices into the vertices of `words`, three a triangle.
     pub indices: Vec<[u32; 3]>,
-    /// Material of each triangle.
-    pub materials: Vec<u32>,
-    /// `TRIANGLE_*` bits of each triangle.
-    pub flags: Vec<u32>,
+    /// Material of each triangle, and its `TRIANGLE_*` bits.
+    pub attributes: Vec<u32>,
     /// Vertex attributes, [`VertexFormat::stride`] words a vertex.
     pub words: Vec<f32>,
     /// Triangles left out because a vertex is NaN, infinite or out of f32's range.
@@ -27,6 +29,11 @@ pub struct FlatGeometry {
 }
 
 impl FlatGeometry {
+    /// Index of a triangle's material.
+    pub fn material(&self, triangle: usize) -> usize {
+        (self.attributes[triangle] & MATERIAL_INDEX_MASK) as usize
+    }
+
     /// Flattens a validated scene around `origin` (metres, world).
     pub fn new(scene: &Scene, format: &VertexFormat, origin: DVec3) -> Self {
         let mut flat = Self::default();
@@ -37,8 +44,7 @@ impl FlatGeometry {
             .sum();
         flat.triangles.reserve_exact(count);
         flat.indices.reserve_exact(count);
-        flat.materials.reserve_exact(count);
-        flat.flags.reserve_exact(count);
+        flat.attributes.reserve_exact(count);
         for instance in &scene.instances {
             let mesh = &scene.meshes[instance.mesh];
             flat.add(
@@ -83,18 +89,19 @@ impl FlatGeometry {
             }
             self.triangles.push(triangle);
             self.indices.push(corner.map(|i| first_vertex + i));
-            self.materials.push(mesh.material as u32);
-            self.flags.push(flags);
+            self.attributes.push(mesh.material as u32 | flags);
         }
         format.append(&mut self.words, mesh, &linear);
     }
 
-    /// The triangles reordered, `order[new] = old`.
-    pub fn reorder(&mut self, order: &[u32]) {
-        self.triangles = order.iter().map(|&i| self.triangles[i as usize]).collect();
-        self.indices = order.iter().map(|&i| self.indices[i as usize]).collect();
-        self.materials = order.iter().map(|&i| self.materials[i as usize]).collect();
-        self.flags = order.iter().map(|&i| self.flags[i as usize]).collect();
+    /// The triangles in the order of a tree, with their vertices turned as they are there.
+    pub fn reorder(&mut self, order: &[Placed]) {
+        let corners = |i: &Placed| i.turned.corners(self.indices[i.turned.triangle as usize]);
+        self.indices = order.par_iter().map(corners).collect();
+        let corners = |i: &Placed| i.turned.corners(self.triangles[i.turned.triangle as usize]);
+        self.triangles = order.par_iter().map(corners).collect();
+        let attributes = |i: &Placed| self.attributes[i.turned.triangle as usize];
+        self.attributes = order.par_iter().map(attributes).collect();
     }
 
     /// Radius of a sphere around the middle of the bounds that holds everything, metres.

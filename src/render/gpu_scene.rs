@@ -91,12 +91,11 @@ fn paged_buffers(device: &Device, scene: &Prepared) -> Result<Vec<PagedBuffer>, 
     // In the order of LARGE_ARRAYS.
     let words = PagedBuffer::upload::<u32>;
     Ok(vec![
-        PagedBuffer::upload(device, 0, &scene.bvh.nodes)?,
-        PagedBuffer::upload(device, 1, &scene.triangles)?,
-        words(device, 2, indices)?,
-        PagedBuffer::upload(device, 3, &scene.vertex_words)?,
-        words(device, 4, &scene.textures.words)?,
-        PagedBuffer::upload(device, 5, &environment.texels)?,
-        PagedBuffer::upload(device, 6, &environment.alias)?,
+        PagedBuffer::upload(device, 0, &scene.bvh.elements)?,
+        words(device, 1, indices)?,
+        PagedBuffer::upload(device, 2, &scene.vertex_words)?,
+        words(device, 3, &scene.textures.words)?,
+        PagedBuffer::upload(device, 4, &environment.texels)?,
+        PagedBuffer::upload(device, 5, &environment.alias)?,
     ])
 }

@@ -5,20 +5,24 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::accel::BvhNode;
+use crate::accel::Element;
 use crate::shader::{FieldLayout, StructLayout};
 
 /// "There is none", for indices.
 pub const NONE: u32 = u32::MAX;
 
-/// [`Triangle::flags`]: coverage must be evaluated.
-pub const TRIANGLE_ALPHA: u32 = 1;
-/// [`Triangle::flags`]: camera rays pass its back face.
-pub const TRIANGLE_SINGLE_SIDED: u32 = 2;
-/// [`Triangle::flags`]: no shading normals.
-pub const TRIANGLE_FLAT: u32 = 4;
-/// [`Triangle::flags`]: its mesh has tangents.
-pub const TRIANGLE_TANGENTS: u32 = 8;
+/// A triangle's attributes: the index of its material, and above it these bits.
+pub const MATERIAL_INDEX_MASK: u32 = 0x00ff_ffff;
+/// Coverage must be evaluated.
+pub const TRIANGLE_ALPHA: u32 = 1 << 24;
+/// Camera rays pass its back face.
+pub const TRIANGLE_SINGLE_SIDED: u32 = 1 << 25;
+/// No shading normals.
+pub const TRIANGLE_FLAT: u32 = 1 << 26;
+/// Its mesh has tangents.
+pub const TRIANGLE_TANGENTS: u32 = 1 << 27;
+/// It is in the table of lights.
+pub const TRIANGLE_EMITS: u32 = 1 << 28;
 
 /// [`Material::flags`]: both faces emit.
 pub const MATERIAL_DOUBLE_SIDED: u32 = 1;
@@ -180,24 +184,6 @@ shared_struct! {
 }
 
 shared_struct! {
-    /// A triangle in the order of the BVH, relative to the camera's position.
-    Triangle {
-        /// First vertex.
-        v0: [f32; 3],
-        /// Index of its material.
-        material: u32,
-        /// Second vertex.
-        v1: [f32; 3],
-        /// `TRIANGLE_*` bits.
-        flags: u32,
-        /// Third vertex.
-        v2: [f32; 3],
-        /// Index into the light table, or [`NONE`].
-        light: u32,
-    }
-}
-
-shared_struct! {
     /// A use of a texture.
     TextureSlot {
         /// Columns of the matrix that maps texture coordinates.
@@ -316,8 +302,7 @@ pub fn layouts() -> Vec<StructLayout> {
         Dispatch::layout(),
         Status::layout(),
         FilmPixel::layout(),
-        bvh_node_layout(),
-        Triangle::layout(),
+        element_layout(),
         TextureSlot::layout(),
         Material::layout(),
         Texture::layout(),
@@ -326,22 +311,16 @@ pub fn layouts() -> Vec<StructLayout> {
     ]
 }
 
-fn bvh_node_layout() -> StructLayout {
-    macro_rules! fields {
-        ($($field:ident: $size:expr,)*) => {
-            vec![$(FieldLayout {
-                name: stringify!($field),
-                offset: std::mem::offset_of!(BvhNode, $field),
-                size: $size,
-            },)*]
-        };
-    }
+fn element_layout() -> StructLayout {
+    let quarter = |(i, name)| FieldLayout {
+        name,
+        offset: 16 * i,
+        size: 16,
+    };
+    let names = ["a", "b", "c", "d"];
     StructLayout {
-        name: "BvhNode",
-        size: size_of::<BvhNode>(),
-        fields: fields! {
-            left_min: 12, left: 4, left_max: 12, left_count: 4,
-            right_min: 12, right: 4, right_max: 12, right_count: 4,
-        },
+        name: "Element",
+        size: size_of::<Element>(),
+        fields: names.into_iter().enumerate().map(quarter).collect(),
     }
 }

@@ -13,6 +13,7 @@ mod frame;
 mod gpu_scene;
 pub mod layout;
 mod lights;
+mod list_wgsl;
 mod materials;
 mod paged;
 mod prepared;

@@ -8,9 +8,8 @@ use crate::gpu::{Buffer, Device, GpuError};
 pub const FIRST_PAGED_BINDING: u32 = 16;
 
 /// Name, WGSL element type and accessor of each large array, in the order of their bindings.
-pub const LARGE_ARRAYS: [(&str, &str, &str); 7] = [
-    ("nodes", "BvhNode", "load_node"),
-    ("triangles", "Triangle", "load_triangle"),
+pub const LARGE_ARRAYS: [(&str, &str, &str); 6] = [
+    ("elements", "Element", "load_element"),
     ("indices", "u32", "load_index"),
     ("vertex_words", "f32", "load_vertex_word"),
     ("texel_words", "u32", "load_texel_word"),
@@ -97,6 +96,9 @@ fn paged_wgsl(
     page_bits: u32,
     first_binding: u32,
 ) -> String {
+    if element == "Element" && std::env::var_os("X64").is_some() {
+        return qwords_wgsl(name, accessor, pages, page_bits, first_binding);
+    }
     let mut text = String::new();
     for page in 0..pages {
         let binding = first_binding + page as u32;
@@ -117,4 +119,41 @@ fn paged_wgsl(
         text += &format!("        default: {{ return {name}_0[offset]; }}\n    }}\n");
     }
     text + "}\n"
+}
+
+fn qwords_wgsl(
+    name: &str,
+    accessor: &str,
+    pages: usize,
+    page_bits: u32,
+    first_binding: u32,
+) -> String {
+    let mut text = String::new();
+    for page in 0..pages {
+        let binding = first_binding + page as u32;
+        text += &format!(
+            "@group(0) @binding({binding}) var<storage, read> {name}_{page}: array<u64>;\n"
+        );
+        text += &format!("fn {accessor}_{page}(first: u32) -> Element {{\n");
+        for i in 0..8 {
+            text += &format!("    let q{i} = {name}_{page}[first + {i}u];\n");
+        }
+        text += "    return Element(";
+        for (i, name) in ["a", "b", "c", "d"].iter().enumerate() {
+            let (p, q) = (2 * i, 2 * i + 1);
+            let _ = name;
+            text += &format!("vec4u(u32(q{p}), u32(q{p} >> 32u), u32(q{q}), u32(q{q} >> 32u)), ");
+        }
+        text += ");\n}\n";
+    }
+    text += &format!("fn {accessor}(index: u32) -> Element {{\n");
+    let mask = (1_u64 << page_bits) - 1;
+    text += &format!(
+        "    let first = (index & {mask}u) * 8u;\n    switch (index >> {page_bits}u) {{\n"
+    );
+    for page in 1..pages {
+        text += &format!("        case {page}u: {{ return {accessor}_{page}(first); }}\n");
+    }
+    text += &format!("        default: {{ return {accessor}_0(first); }}\n    }}\n}}\n");
+    text
 }

@@ -1,5 +1,7 @@
 //! A scene made ready for the device: flat, sorted by the BVH, its lights in a table. No device yet.
 
+use std::time::{Duration, Instant};
+
 use glam::{DVec3, Vec2};
 
 use super::emission::triangle_power;
@@ -11,11 +13,15 @@ use super::lights::{LightList, punctual};
 use super::materials::materials;
 use super::textures::TextureSet;
 use super::vertex_format::{VertexFormat, VertexNeeds};
-use crate::accel::{BuildOptions, Bvh};
+use crate::accel::{BuildOptions, Bvh, Placed};
 use crate::scene::{Features, LightKind, PunctualLight, Scene};
 
 /// Most triangles that the BVH can count.
 const MAX_TRIANGLES: u64 = crate::accel::MAX_TRIANGLES as u64;
+
+/// The owner's words of a pair: the attributes of its triangles, then the first light of them.
+const FIRST_ATTRIBUTES: usize = 13;
+const FIRST_LIGHT: usize = 15;
 
 /// Everything that the device will hold, in its own order and layout.
 #[derive(Debug)]
@@ -26,8 +32,10 @@ pub struct Prepared {
     pub origin: DVec3,
     /// The acceleration structure.
     pub bvh: Bvh,
-    /// Triangles in its order.
-    pub triangles: Vec<layout::Triangle>,
+    /// Wall time of its build.
+    pub bvh_time: Duration,
+    /// Whether any of its triangles is in the table of lights.
+    pub has_light_triangles: bool,
     /// Vertex indices of each triangle.
     pub indices: Vec<[u32; 3]>,
     /// Vertex attributes.
@@ -67,20 +75,25 @@ impl Prepared {
         });
         let origin = scene.cameras[camera].to_world.w_axis.truncate();
         let mut flat = FlatGeometry::new(scene, &vertex_format, origin);
-        let bvh = Bvh::build(&flat.triangles, options);
+        let start = Instant::now();
+        let mut bvh = Bvh::build(&flat.triangles, options);
+        let bvh_time = start.elapsed();
         flat.reorder(&bvh.order);
         let mut textures = TextureSet::default();
         let materials = materials(scene, &mut textures);
         let environment = environment_table(scene);
         let mut lights = LightList::default();
-        let triangle_lights = add_triangle_lights(&mut lights, scene, &flat, &vertex_format);
+        let triangle_lights =
+            add_triangle_lights(&mut lights, scene, &flat, &vertex_format, &bvh.order);
+        attach(&mut bvh, &flat, &triangle_lights);
         let (near, lost) = punctual_lights(scene, origin);
         let environment_light = add_other_lights(&mut lights, scene, &near, &flat, &environment);
         Ok(Self {
             features,
             origin,
             bvh,
-            triangles: device_triangles(&flat, &triangle_lights),
+            bvh_time,
+            has_light_triangles: triangle_lights.iter().any(|&light| light != NONE),
             warnings: warnings(flat.dropped, lost),
             indices: flat.indices,
             vertex_words: flat.words,
@@ -103,6 +116,9 @@ fn check_counts(scene: &Scene) -> Result<(), RenderError> {
         Ok(())
     };
     check("triangles", scene.triangle_count(), MAX_TRIANGLES)?;
+    let materials = scene.materials.len() as u64;
+    let limit = u64::from(layout::MATERIAL_INDEX_MASK) + 1;
+    check("materials", materials, limit)?;
     let vertices = scene
         .instances
         .iter()
@@ -137,17 +153,18 @@ fn add_triangle_lights(
     scene: &Scene,
     flat: &FlatGeometry,
     format: &VertexFormat,
+    order: &[Placed],
 ) -> Vec<u32> {
     (0..flat.triangles.len())
         .map(|i| {
-            let material = &scene.materials[flat.materials[i] as usize];
+            let material = &scene.materials[flat.material(i)];
             if material.unlit || material.emissive.max_element() <= 0.0 {
                 return NONE;
             }
             let corners = |set| flat.indices[i].map(|v| tex_coord(flat, format, v, set));
             let power = triangle_power(scene, material, &flat.triangles[i], corners);
             if power > 0.0 && power.is_finite() {
-                lights.add_triangle(i as u32, power)
+                lights.add_triangle(order[i].id, power)
             } else {
                 NONE
             }
@@ -204,19 +221,19 @@ fn add_other_lights(
     lights.add_environment(mean, radius)
 }
 
-fn device_triangles(flat: &FlatGeometry, lights: &[u32]) -> Vec<layout::Triangle> {
-    flat.triangles
-        .iter()
-        .enumerate()
-        .map(|(i, [v0, v1, v2])| layout::Triangle {
-            v0: v0.to_array(),
-            material: flat.materials[i],
-            v1: v1.to_array(),
-            flags: flat.flags[i],
-            v2: v2.to_array(),
-            light: lights[i],
-        })
-        .collect()
+/// Writes into each pair what a hit on it leads to: materials, flags, lights.
+fn attach(bvh: &mut Bvh, flat: &FlatGeometry, lights: &[u32]) {
+    for (i, placed) in bvh.order.iter().enumerate() {
+        let words = &mut bvh.elements[placed.id as usize / 2].words;
+        let emits = lights[i] != NONE;
+        // Of two lights the first is kept; the second one's comes right after it.
+        let is_first_light = words[FIRST_ATTRIBUTES] & layout::TRIANGLE_EMITS == 0;
+        if emits && is_first_light {
+            words[FIRST_LIGHT] = lights[i];
+        }
+        let flag = if emits { layout::TRIANGLE_EMITS } else { 0 };
+        words[FIRST_ATTRIBUTES + (placed.id & 1) as usize] = flat.attributes[i] | flag;
+    }
 }
 
 fn warnings(dropped: u64, lost_lights: u64) -> Vec<String> {

@@ -51,6 +51,15 @@ pub fn virtual_files(
     let constants = constants(scene, settings, count_steps);
     files.insert("features.wgsl".into(), features_wgsl(&constants));
     files.insert("buffers.wgsl".into(), gpu_scene.buffers_wgsl());
+    let structure = if scene.bvh.depth == 0 { "list" } else { "bvh" };
+    if scene.bvh.depth == 0 {
+        let text = super::list_wgsl::list_wgsl(&scene.bvh.elements);
+        files.insert("list.wgsl".into(), text);
+    }
+    files.insert(
+        "accel.wgsl".into(),
+        format!("#include \"accel/{structure}.wgsl\"\n"),
+    );
     Ok(files)
 }
 
@@ -100,13 +109,12 @@ pub fn constants(
 ) -> Vec<(&'static str, Constant)> {
     let format = &scene.vertex_format;
     let offset = |o: Option<u32>| Constant::U32(o.unwrap_or(0));
-    let light_triangles = scene
-        .triangles
-        .iter()
-        .any(|t| t.light != super::layout::NONE);
     let mut list = feature_constants(&scene.features);
     list.extend([
-        ("HAS_LIGHT_TRIANGLES", Constant::Bool(light_triangles)),
+        (
+            "HAS_LIGHT_TRIANGLES",
+            Constant::Bool(scene.has_light_triangles),
+        ),
         (
             "HAS_PUNCTUAL_LIGHTS",
             Constant::Bool(scene.lights.iter().any(super::lights::is_punctual)),
@@ -125,6 +133,7 @@ pub fn constants(
         ("UV0_OFFSET", offset(format.uv0)),
         ("UV1_OFFSET", offset(format.uv1)),
         ("COLOR_OFFSET", offset(format.colors)),
+        ("PAIR_COUNT", Constant::U32(scene.bvh.elements.len() as u32)),
         ("STACK_SIZE", Constant::U32(scene.bvh.depth.max(1))),
         ("COUNT_STEPS", Constant::Bool(count_steps)),
         ("COUNT_RAYS", Constant::Bool(settings.stats)),

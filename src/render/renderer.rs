@@ -16,6 +16,10 @@ use crate::gpu::{BindGroup, BindingKind, Buffer, Device, Pipeline};
 use crate::scene::Scene;
 use crate::shader::{self, Diagnostic, OverrideInfo, ShaderLibrary};
 
+/// Samples a pixel in a pass that takes longer than [`PASS`], at most: the pixels of a picture that is
+/// stopped in between differ by so many samples.
+const MAX_GROWN_PASS: u64 = 32;
+
 /// Wall time that one submission should take: short enough for any watchdog and for Ctrl-C.
 const PIECE: Duration = Duration::from_millis(100);
 /// Wall time after which all pixels should have got their next samples.
@@ -288,7 +292,9 @@ impl<'a> Renderer<'a> {
         // A small picture is a single piece.
         let pieces = (pixels / f64::from(16 * TILE_LANES)).clamp(1.0, PASS.div_duration_f64(PIECE));
         let fitting = (self.rate * PIECE.as_secs_f64() * pieces / pixels) as u64;
-        let fitting = self.settings.pass_samples.unwrap_or(fitting);
+        // Lanes that go from sample to sample keep each other busy, so passes grow with what is done.
+        let growing = fitting.max(self.spp_done.min(MAX_GROWN_PASS));
+        let fitting = self.settings.pass_samples.unwrap_or(growing);
         fitting.clamp(1, self.settings.spp - self.spp_done)
     }
 

@@ -10,6 +10,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 /// in u32. No f64, i64, f16, float atomics or textures: not every Vulkan device has them, or the
 /// `gpu` layer does not bind them.
 pub const CAPABILITIES: Capabilities = Capabilities::SUBGROUP
+    .union(Capabilities::SHADER_INT64)
     .union(Capabilities::SUBGROUP_BARRIER)
     .union(Capabilities::SHADER_FLOAT16_IN_FLOAT32);
 

@@ -10,7 +10,8 @@
 
 // t, triangle, back face, occluded; then the barycentrics.
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
+    stack_lane = lane;
     if (id.x >= params.x) {
         return;
     }

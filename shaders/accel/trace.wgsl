@@ -1,0 +1,78 @@
+// What every acceleration structure has: hits, and the questions that are asked of it. The file
+// that the generated accel.wgsl includes (accel/bvh.wgsl or accel/list.wgsl) has
+//
+//   fn trace(query: Query) -> Answer
+//
+// Expects: Element, Triangle (types.wgsl); fn load_element(i: u32) -> Element;
+// const HAS_ALPHA, HAS_SINGLE_SIDED; fn count_step(), called once a loop iteration; and
+//
+//   fn accept_hit(triangle: Triangle, b: vec3f, back_face: bool, camera_ray: bool, seed: u32) -> bool
+//
+// which says whether a ray stops at a hit (alpha, culling). It must be a function of its arguments
+// alone: how often and in which order it is called for the triangles along a ray is left open.
+
+#include "bindings.wgsl"
+#include "ray.wgsl"
+#include "steps.wgsl"
+#include "coverage.wgsl"
+#include "geometry/triangle.wgsl"
+#include "accel/element.wgsl"
+
+// Hit.triangle where nothing was hit.
+const MISS: u32 = 0xffffffffu;
+
+// The closest hit.
+struct Hit {
+  // Ray parameter, 0 < t <= t_max; the ray's t_max for a miss.
+  t: f32,
+  // 2 x the index of its pair's element, + 1 for the second of the pair; or MISS.
+  triangle: u32,
+  // Barycentric coordinates of v0, v1, v2.
+  b: vec3f,
+  // Whether v0, v1, v2 run clockwise as seen from the ray's origin.
+  back_face: bool,
+}
+
+// Up to two rays, which are traced one right after the other: a lane that is done with the first does
+// not wait for its neighbours.
+struct Query {
+  // Whose closest hit is asked for, if has_ray.
+  ray: Ray,
+  has_ray: bool,
+  // Whether the ray comes from the camera, and what decides by chance where surfaces are blended.
+  camera_ray: bool,
+  seed: u32,
+  // Of which only is asked whether anything is in its way, if has_shadow.
+  shadow: Ray,
+  has_shadow: bool,
+  shadow_seed: u32,
+}
+
+struct Answer {
+  // hit.triangle is MISS where there is none.
+  hit: Hit,
+  // Whether anything that accept_hit accepts is hit at 0 < t <= t_max.
+  occluded: bool,
+}
+
+fn miss(ray: Ray) -> Hit {
+  return Hit(ray.t_max, MISS, vec3f(0.0), false);
+}
+
+fn ask(query: Query) -> Answer {
+  if (COUNT_RAYS) {
+    closest_rays += select(0u, 1u, query.has_ray);
+    any_rays += select(0u, 1u, query.has_shadow);
+  }
+  return trace(query);
+}
+
+// The closest hit of a ray; hit.triangle is MISS where there is none.
+fn intersect(ray: Ray, camera_ray: bool, seed: u32) -> Hit {
+  return ask(Query(ray, true, camera_ray, seed, ray, false, 0u)).hit;
+}
+
+// Whether anything that accept_hit accepts is hit at 0 < t <= t_max.
+fn occluded(ray: Ray, seed: u32) -> bool {
+  return ask(Query(ray, false, false, 0u, ray, true, seed)).occluded;
+}

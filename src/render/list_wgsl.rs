@@ -1,0 +1,40 @@
+//! The generated part of a list's traversal (`shaders/accel/list.wgsl`): every pair of a tiny scene
+//! in a row, so that a vertex that several pairs share is turned into the ray's space once.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+use crate::accel::Element;
+
+/// The `list.wgsl` of a scene: which vertices its pairs share. Positions are not in it, so that the
+/// text is the same wherever the camera stands.
+pub fn list_wgsl(elements: &[Element]) -> String {
+    let mut text = String::from(
+        "// Generated: the pairs of the scene, by the vertices that they share.\n\
+         fn closest_of_all(setup: RaySetup, ray: Ray) -> ListHit {\n\
+         \x20   var hit = ListHit(ray.t_max, MISS);\n",
+    );
+    let mut names: HashMap<[u32; 3], String> = HashMap::new();
+    for (i, element) in elements.iter().enumerate() {
+        let mut fan = Vec::new();
+        for corner in 0..4 {
+            let bits = [0, 1, 2].map(|k| element.words[3 * corner + k]);
+            let name = names.entry(bits).or_insert_with(|| {
+                let name = format!("v{i}_{corner}");
+                let _ = writeln!(
+                    text,
+                    "    let {name} = exact_shear(setup, pair_vertices(load_element({i}u)).v{corner});"
+                );
+                name
+            });
+            fan.push(name.clone());
+        }
+        let _ = writeln!(
+            text,
+            "    hit = closer_of_pair(hit, {}u, ray, {});",
+            2 * i,
+            fan.join(", ")
+        );
+    }
+    text + "    return hit;\n}\n"
+}
