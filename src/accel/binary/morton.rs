@@ -93,10 +93,10 @@ impl Grid {
 
 /// Moves bit i, of 12, to 3 i.
 fn spread(x: u64) -> u64 {
-    let x = (x | x << 16) & 0x0000_00ff_0000_ff;
-    let x = (x | x << 8) & 0x0000_f00f_00f0_0f;
-    let x = (x | x << 4) & 0x00c3_0c30_c30c_3;
-    (x | x << 2) & 0x0249_2492_4924_9
+    let x = (x | x << 16) & 0xff00_00ff;
+    let x = (x | x << 8) & 0xf0_0f00_f00f;
+    let x = (x | x << 4) & 0xc30_c30c_30c3;
+    (x | x << 2) & 0x2492_4924_9249
 }
 
 #[cfg(test)]

@@ -251,10 +251,8 @@ fn divide_evenly(items: &mut [Node4], centroids: Box4) -> (usize, [Box4; 2]) {
 fn partition(items: &mut [Node4], is_left: impl Fn(&Node4) -> bool) -> usize {
     let mut middle = 0;
     for i in 0..items.len() {
-        let item = items[i];
-        items[i] = items[middle];
-        items[middle] = item;
-        middle += usize::from(is_left(&item));
+        items.swap(i, middle);
+        middle += usize::from(is_left(&items[middle]));
     }
     middle
 }
