@@ -153,7 +153,10 @@ impl Element {
                 plane[child] = value;
             }
         }
-        for (word, bytes) in words[4..].iter_mut().zip(planes.as_flattened().chunks_exact(4)) {
+        for (word, bytes) in words[4..]
+            .iter_mut()
+            .zip(planes.as_flattened().chunks_exact(4))
+        {
             *word = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
         }
         Element { words }
@@ -222,7 +225,11 @@ impl Node {
             f64::from(self.origin[axis]) + steps * f64::from(self.step[axis])
         };
         let corner = |high: usize| {
-            Vec3::new(at(high, 0) as f32, at(high + 2, 1) as f32, at(high + 4, 2) as f32)
+            Vec3::new(
+                at(high, 0) as f32,
+                at(high + 2, 1) as f32,
+                at(high + 4, 2) as f32,
+            )
         };
         Aabb {
             min: corner(0),

@@ -125,7 +125,11 @@ impl Search<'_> {
             let growth = growth(&triangle, &self.triangles[other]);
             if growth <= best.map_or(MAX_GROWTH, |b| b.0) {
                 let edge = edge as u8;
-                let partner = Partner { other, edge, other_edge };
+                let partner = Partner {
+                    other,
+                    edge,
+                    other_edge,
+                };
                 best = Some((growth, partner));
             }
         }
@@ -167,7 +171,11 @@ fn growth(a: &[Vec3; 3], b: &[Vec3; 3]) -> f64 {
     let (a, b) = (Aabb::from_points(a), Aabb::from_points(b));
     let separate = a.half_area() + b.half_area();
     let together = a.union(b).half_area();
-    if together > 0.0 { together / separate } else { 0.0 }
+    if together > 0.0 {
+        together / separate
+    } else {
+        0.0
+    }
 }
 
 /// The bits of both ends; -0 counts as 0.

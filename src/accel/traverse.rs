@@ -65,7 +65,13 @@ impl BoxSetup {
     fn new(ray: &Ray) -> BoxSetup {
         let d = ray.direction;
         let least = d.abs().max_element() * SMALLEST_SHARE;
-        let inverse = |d: f32| 1.0 / if d.abs() < least { least.copysign(d) } else { d };
+        let inverse = |d: f32| {
+            1.0 / if d.abs() < least {
+                least.copysign(d)
+            } else {
+                d
+            }
+        };
         BoxSetup {
             origin: ray.origin,
             inverse: Vec3::new(inverse(d.x), inverse(d.y), inverse(d.z)),
@@ -182,7 +188,10 @@ fn visit(element: &Element, setup: &BoxSetup, t_max: f32) -> Group {
         *key = nearness | if is_hit { slot as u32 + 1 } else { 0 };
     }
     keys.sort_unstable();
-    let slots = keys.iter().rev().fold(0, |slots, key| slots << 4 | key & 15);
+    let slots = keys
+        .iter()
+        .rev()
+        .fold(0, |slots, key| slots << 4 | key & 15);
     Group {
         header: element.words[3],
         slots,

@@ -43,7 +43,9 @@ pub enum BvhError {
     SharedChild { node: usize, child: u32 },
     #[error("element {element} cannot be reached from the root")]
     Unreachable { element: usize },
-    #[error("node {node}: its child {child} is a pair whose vertices are not those of its triangles")]
+    #[error(
+        "node {node}: its child {child} is a pair whose vertices are not those of its triangles"
+    )]
     Vertices { node: usize, child: u32 },
     #[error("node {node}: the box of its child {child} does not contain all of its triangles")]
     Box { node: usize, child: u32 },
@@ -167,7 +169,12 @@ impl Bvh {
 
     /// The exact bounds of a pair's triangles, whose vertices must be those of the input; of a pair
     /// in no triangle's place, the one of an empty tree, nothing.
-    fn pair_bounds(&self, node: usize, pair: u32, triangles: &[[Vec3; 3]]) -> Result<Aabb, BvhError> {
+    fn pair_bounds(
+        &self,
+        node: usize,
+        pair: u32,
+        triangles: &[[Vec3; 3]],
+    ) -> Result<Aabb, BvhError> {
         let element = &self.elements[pair as usize];
         let is_mine = |id: u32| {
             let position = element.first_triangle() as usize + (id & 1) as usize;

@@ -4,6 +4,7 @@
 
 mod aov;
 mod args;
+mod bvh_report;
 mod devices;
 mod environment;
 mod exit;

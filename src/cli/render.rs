@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 
 use super::aov::{self, Layers, Stage};
 use super::args::RenderArgs;
+use super::bvh_report::BvhReport;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::message::{self, Warnings};
@@ -41,7 +42,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     let scene = timed(&mut time.load, || load(args, &mut warnings))?;
     let mut settings = settings::of(args, &scene)?;
     let device = timed(&mut time.device, || open_device(args))?;
-    let options = BuildOptions::default();
+    let options = BuildOptions { preset: args.bvh };
     let prepared = timed(&mut time.accel, || {
         Prepared::new(&scene, settings.camera, &options)
     })?;
@@ -76,6 +77,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     // From the picture to files.
     let mut report = Report::new(args, &scene, &settings, device.info());
     report.seconds = time;
+    report.bvh = BvhReport::new(args.bvh, &prepared);
     report.add_film(&film, &renderer.progress(), args.stats, &mut warnings);
     report.interrupted = interrupt.requested();
     report.device_bytes = device.peak_bytes_in_use();

@@ -5,6 +5,7 @@ use std::time::Instant;
 use serde::{Serialize, Serializer};
 
 use super::args::RenderArgs;
+use super::bvh_report::BvhReport;
 use super::message::Warnings;
 use crate::gpu::DeviceInfo;
 use crate::render::{Film, Progress, Settings};
@@ -51,6 +52,8 @@ pub struct Report {
     pub rays_per_second: Option<f64>,
     /// Of all instances.
     pub triangles: u64,
+    /// The acceleration structure.
+    pub bvh: BvhReport,
     /// Most bytes of device memory held at once.
     pub device_bytes: u64,
     /// Mean over the picture, W·sr⁻¹·m⁻², linear Rec. 709.

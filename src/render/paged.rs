@@ -121,7 +121,13 @@ fn paged_wgsl(
     text + "}\n"
 }
 
-fn qwords_wgsl(name: &str, accessor: &str, pages: usize, page_bits: u32, first_binding: u32) -> String {
+fn qwords_wgsl(
+    name: &str,
+    accessor: &str,
+    pages: usize,
+    page_bits: u32,
+    first_binding: u32,
+) -> String {
     let mut text = String::new();
     for page in 0..pages {
         let binding = first_binding + page as u32;
@@ -136,15 +142,15 @@ fn qwords_wgsl(name: &str, accessor: &str, pages: usize, page_bits: u32, first_b
         for (i, name) in ["a", "b", "c", "d"].iter().enumerate() {
             let (p, q) = (2 * i, 2 * i + 1);
             let _ = name;
-            text += &format!(
-                "vec4u(u32(q{p}), u32(q{p} >> 32u), u32(q{q}), u32(q{q} >> 32u)), "
-            );
+            text += &format!("vec4u(u32(q{p}), u32(q{p} >> 32u), u32(q{q}), u32(q{q} >> 32u)), ");
         }
         text += ");\n}\n";
     }
     text += &format!("fn {accessor}(index: u32) -> Element {{\n");
     let mask = (1_u64 << page_bits) - 1;
-    text += &format!("    let first = (index & {mask}u) * 8u;\n    switch (index >> {page_bits}u) {{\n");
+    text += &format!(
+        "    let first = (index & {mask}u) * 8u;\n    switch (index >> {page_bits}u) {{\n"
+    );
     for page in 1..pages {
         text += &format!("        case {page}u: {{ return {accessor}_{page}(first); }}\n");
     }

@@ -1,5 +1,7 @@
 //! A scene made ready for the device: flat, sorted by the BVH, its lights in a table. No device yet.
 
+use std::time::{Duration, Instant};
+
 use glam::{DVec3, Vec2};
 
 use super::emission::triangle_power;
@@ -30,6 +32,8 @@ pub struct Prepared {
     pub origin: DVec3,
     /// The acceleration structure.
     pub bvh: Bvh,
+    /// Wall time of its build.
+    pub bvh_time: Duration,
     /// Whether any of its triangles is in the table of lights.
     pub has_light_triangles: bool,
     /// Vertex indices of each triangle.
@@ -71,7 +75,9 @@ impl Prepared {
         });
         let origin = scene.cameras[camera].to_world.w_axis.truncate();
         let mut flat = FlatGeometry::new(scene, &vertex_format, origin);
+        let start = Instant::now();
         let mut bvh = Bvh::build(&flat.triangles, options);
+        let bvh_time = start.elapsed();
         flat.reorder(&bvh.order);
         let mut textures = TextureSet::default();
         let materials = materials(scene, &mut textures);
@@ -86,6 +92,7 @@ impl Prepared {
             features,
             origin,
             bvh,
+            bvh_time,
             has_light_triangles: triangle_lights.iter().any(|&light| light != NONE),
             warnings: warnings(flat.dropped, lost),
             indices: flat.indices,

@@ -56,7 +56,10 @@ pub fn virtual_files(
         let text = super::list_wgsl::list_wgsl(&scene.bvh.elements);
         files.insert("list.wgsl".into(), text);
     }
-    files.insert("accel.wgsl".into(), format!("#include \"accel/{structure}.wgsl\"\n"));
+    files.insert(
+        "accel.wgsl".into(),
+        format!("#include \"accel/{structure}.wgsl\"\n"),
+    );
     Ok(files)
 }
 
@@ -108,7 +111,10 @@ pub fn constants(
     let offset = |o: Option<u32>| Constant::U32(o.unwrap_or(0));
     let mut list = feature_constants(&scene.features);
     list.extend([
-        ("HAS_LIGHT_TRIANGLES", Constant::Bool(scene.has_light_triangles)),
+        (
+            "HAS_LIGHT_TRIANGLES",
+            Constant::Bool(scene.has_light_triangles),
+        ),
         (
             "HAS_PUNCTUAL_LIGHTS",
             Constant::Bool(scene.lights.iter().any(super::lights::is_punctual)),
