@@ -1,0 +1,94 @@
+"""The command line."""
+
+import argparse
+import json
+import os
+import pathlib
+import sys
+
+from . import compare, install, peer_etendue, places, scene_writer, tables
+from .places import BenchError
+
+
+def parser():
+    top = argparse.ArgumentParser(prog="tools/bench", description="Measures étendue against its peers.")
+    top.add_argument("--scenes", default=",".join(scene_writer.NAMES), help="comma-separated: %(default)s")
+    top.add_argument("--peers", default="mitsuba,cycles", help="comma-separated: %(default)s")
+    top.add_argument("--rounds", type=int, default=5, help="interleaved rounds (default %(default)s)")
+    top.add_argument("--spp", type=int, default=16, help="samples a pixel of a timed render (default %(default)s)")
+    top.add_argument("--size", type=int, default=512, help="width and height (default %(default)s)")
+    top.add_argument("--batches", type=int, default=8, help="pictures of the agreement check (default %(default)s)")
+    top.add_argument("--batch-spp", type=int, default=16, help="samples a pixel of each (default %(default)s)")
+    top.add_argument("--threads", type=int, default=places.threads(), help="for everyone (default: all, %(default)s)")
+    top.add_argument("--quick", action="store_true", help="3 rounds of 4 samples at 256x256: tries the machinery out")
+    add_device(top)
+    return top
+
+
+def add_device(top):
+    device = top.add_mutually_exclusive_group()
+    device.add_argument("--driver", default="newest", help="newest, system, or a Debian suite for tools/lavapipe")
+    device.add_argument("--gpu", action="store_true", help="whatever the system's Vulkan gives")
+    top.add_argument("--etendue", help="use this program instead of building it")
+    top.add_argument("--json", type=pathlib.Path, metavar="FILE")
+    top.add_argument("--markdown", type=pathlib.Path, metavar="FILE")
+
+
+def command_of(options):
+    """étendue with what has to stand before it."""
+    driver = "system" if options.gpu else options.driver
+    return [*peer_etendue.runner(driver), str(peer_etendue.program(options.etendue))]
+
+
+def settings_of(options):
+    s = compare.Settings(command_of(options), options.size, 8, options.spp, options.rounds, options.batches,
+                         options.batch_spp, options.threads)
+    if options.quick:
+        s.size, s.rounds, s.spp, s.batches, s.batch_spp = 256, 3, 4, 8, 8
+    return s
+
+
+def compare_all(options):
+    settings = settings_of(options)
+    report = {"settings": {k: v for k, v in vars(settings).items() if k != "etendue"}, "rows": [], "driver": "", "peers": []}
+    for scene in split(options.scenes, scene_writer.NAMES, "--scenes"):
+        for peer in split(options.peers, list(compare.TOLERANCES), "--peers"):
+            row = compare.measure(settings, scene, peer)
+            report["rows"].append(row)
+            report["driver"] = row.get("etendue", {}).get("driver", report["driver"])
+            version = row.get("other", {}).get("version", peer)
+            report["peers"] += [] if version in report["peers"] else [version]
+            write(options, report, tables.comparison(report))
+    print(tables.comparison(report))
+    return 1 if any("error" in row for row in report["rows"]) else 0
+
+
+def split(text, known, flag):
+    names = [name for name in text.split(",") if name]
+    for name in names:
+        if name not in known:
+            raise BenchError(f"{flag}: there is no {name!r}; there are {', '.join(known)}")
+    return names
+
+
+def write(options, report, markdown):
+    """After each row, so that an interrupted run leaves what it has."""
+    if options.json:
+        options.json.write_text(json.dumps(report, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    if options.markdown:
+        options.markdown.write_text(markdown, encoding="utf-8")
+
+
+def main(arguments):
+    """Exit codes: 0 measured, 1 means disagree, 2 usage, 3 something cannot be installed or run, 130 interrupted."""
+    try:
+        return compare_all(parser().parse_args(arguments))
+    except BenchError as error:
+        print(f"bench: {error}", file=sys.stderr)
+        return error.code
+    except KeyboardInterrupt:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
