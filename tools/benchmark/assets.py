@@ -14,7 +14,7 @@ from .places import BenchError, shared_assets
 NAMES = {
     "flight-helmet": ("FlightHelmet/FlightHelmet.gltf", "brown_photostudio_02_1k.hdr"),
     "barn-lamp": ("AnisotropyBarnLamp/AnisotropyBarnLamp.gltf", "noon_grass_1k.hdr"),
-    "specular-test": ("SpecularTest.glb", "autoshop_01_1k.hdr"),
+    "roughness-test": ("TransmissionRoughnessTest.glb", "autoshop_01_1k.hdr"),
 }
 
 
@@ -118,9 +118,7 @@ class Variant:
 
     def material(self, index):
         source = self.source["materials"][index].get("pbrMetallicRoughness", {})
-        pbr = {"baseColorFactor": source.get("baseColorFactor", [1, 1, 1, 1]), "metallicFactor": 0}
-        # Above 0.9 paths are long and mean little; below, the asset's own colour.
-        pbr["baseColorFactor"] = [min(x, 0.9) for x in pbr["baseColorFactor"][:3]] + [1]
+        pbr = {"baseColorFactor": [*source.get("baseColorFactor", [1, 1, 1])[:3], 1], "metallicFactor": 0}
         if "baseColorTexture" in source:
             texture = self.source["textures"][source["baseColorTexture"]["index"]]
             pbr["baseColorTexture"] = {"index": self.texture(texture["source"])}

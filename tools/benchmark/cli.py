@@ -2,17 +2,17 @@
 
 import argparse
 import json
-import os
 import pathlib
 import sys
 
-from . import compare, install, peer_etendue, places, scene_writer, tables
+from . import assets, builder, compare, gpu, peer_etendue, places, scaling, scene_writer, tables
 from .places import BenchError
 
 
 def parser():
-    top = argparse.ArgumentParser(prog="tools/bench", description="Measures étendue against its peers.")
-    top.add_argument("--scenes", default=",".join(scene_writer.NAMES), help="comma-separated: %(default)s")
+    top = argparse.ArgumentParser(prog="tools/bench", description="Measures étendue against its peers.",
+                                  epilog="Also: tools/bench scaling, tools/bench gpu, tools/bench bvh; each has --help.")
+    top.add_argument("--scenes", default="", help=f"comma-separated: {', '.join(scene_writer.NAMES)} (default: all that can be had)")
     top.add_argument("--peers", default="mitsuba,cycles", help="comma-separated: %(default)s")
     top.add_argument("--rounds", type=int, default=5, help="interleaved rounds (default %(default)s)")
     top.add_argument("--spp", type=int, default=16, help="samples a pixel of a timed render (default %(default)s)")
@@ -51,7 +51,9 @@ def settings_of(options):
 def compare_all(options):
     settings = settings_of(options)
     report = {"settings": {k: v for k, v in vars(settings).items() if k != "etendue"}, "rows": [], "driver": "", "peers": []}
-    for scene in split(options.scenes, scene_writer.NAMES, "--scenes"):
+    report["left_out"] = [] if options.scenes or places.shared_assets() else list(assets.NAMES)
+    everything = [name for name in scene_writer.NAMES if name not in report["left_out"]]
+    for scene in split(options.scenes, scene_writer.NAMES, "--scenes") or everything:
         for peer in split(options.peers, list(compare.TOLERANCES), "--peers"):
             row = compare.measure(settings, scene, peer)
             report["rows"].append(row)
@@ -79,9 +81,63 @@ def write(options, report, markdown):
         options.markdown.write_text(markdown, encoding="utf-8")
 
 
+def measure_scaling(arguments):
+    top = argparse.ArgumentParser(prog="tools/bench scaling", description="Time against the size of the problem.")
+    top.add_argument("--rounds", type=int, default=3)
+    top.add_argument("--threads", type=int, default=places.threads())
+    top.add_argument("--triangles", type=int, default=10**7, help="the most (default %(default)s)")
+    top.add_argument("--samples", type=int, default=1, help="multiplies the samples of all points (default %(default)s)")
+    top.add_argument("--svg", type=pathlib.Path, metavar="FILE", help="a plot")
+    add_device(top)
+    options = top.parse_args(arguments)
+    rows = scaling.measure(command_of(options), options.threads, options.rounds, options.triangles, options.samples)
+    table = scaling.markdown(rows, f"étendue, {options.threads} threads, medians of {options.rounds} interleaved rounds.")
+    if options.svg:
+        options.svg.write_text(scaling.svg(rows), encoding="utf-8")
+    return finish(options, rows, table)
+
+
+def measure_gpu(arguments):
+    top = argparse.ArgumentParser(prog="tools/bench gpu", description="Rays per second at 1080p.")
+    top.add_argument("--scenes", default="cornell,spheres-360k,spheres-2m,spheres-8m")
+    top.add_argument("--rounds", type=int, default=5)
+    top.add_argument("--spp", type=int, default=64)
+    top.add_argument("--threads", type=int, default=places.threads())
+    add_device(top)
+    options = top.parse_args(arguments)
+    scenes = split(options.scenes, scene_writer.NAMES, "--scenes")
+    rows = gpu.measure(command_of(options), options.threads, scenes, options.rounds, options.spp)
+    return finish(options, rows, gpu.markdown(rows, options.rounds, options.spp))
+
+
+def measure_bvh(arguments):
+    top = argparse.ArgumentParser(prog="tools/bench bvh", description="The builder's presets.")
+    top.add_argument("--scenes", default="spheres-360k,spheres-2m,spheres-8m")
+    top.add_argument("--rounds", type=int, default=5)
+    top.add_argument("--spp", type=int, default=4)
+    top.add_argument("--size", type=int, default=512)
+    top.add_argument("--threads", type=int, default=places.threads())
+    add_device(top)
+    options = top.parse_args(arguments)
+    scenes = split(options.scenes, scene_writer.NAMES, "--scenes")
+    rows = builder.measure(command_of(options), options.threads, scenes, options.rounds, options.spp, options.size)
+    return finish(options, rows, builder.markdown(rows, options.rounds, options.spp, options.size))
+
+
+def finish(options, report, table):
+    write(options, report, table)
+    print(table)
+    return 0
+
+
+COMMANDS = {"scaling": measure_scaling, "gpu": measure_gpu, "bvh": measure_bvh}
+
+
 def main(arguments):
     """Exit codes: 0 measured, 1 means disagree, 2 usage, 3 something cannot be installed or run, 130 interrupted."""
     try:
+        if arguments and arguments[0] in COMMANDS:
+            return COMMANDS[arguments[0]](arguments[1:])
         return compare_all(parser().parse_args(arguments))
     except BenchError as error:
         print(f"bench: {error}", file=sys.stderr)

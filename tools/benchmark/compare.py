@@ -75,7 +75,7 @@ class Row:
     def reference(self):
         """The peer's batches, kept in the cache: their mean is the reference of the error."""
         s = self.settings
-        facts = [scene_writer.hash_of(self.path), self.name, self.peer.about["version"], s.size, s.max_depth]
+        facts = [scene_writer.hash_of(self.path), conversion(), self.peer.about["version"], s.size, s.max_depth]
         key = hashlib.sha256(json.dumps([*facts, s.batches, s.batch_spp]).encode()).hexdigest()[:16]
         path = cache() / "references" / f"{self.scene}-{self.name}-{key}.npy"
         if not path.exists():
@@ -159,6 +159,12 @@ class Row:
             self.efficiency_of(self.peer, 1, sampler=sampler)
             scores[sampler] = self.efficiency_of(self.peer, 2, sampler=sampler)
         return {"sampler": max(scores, key=scores.get)}
+
+
+def conversion():
+    """Of the code that makes a peer's scene of ours: a reference by other code is another reference."""
+    sources = [f"{name}.py" for name in ("camera", "scene_reader", "peer_mitsuba", "peer_cycles")]
+    return hashlib.sha256(b"".join((TOOLS / "benchmark" / name).read_bytes() for name in sources)).hexdigest()
 
 
 def not_comparable(verdict):

@@ -83,13 +83,13 @@ def bsdf(material):
 
 
 def write_ply(path, mesh):
-    """Binary PLY. Mitsuba's v points up, glTF's down."""
+    """Binary PLY. Mitsuba's v points down as glTF's does."""
     fields = [("position", "<f4", 3)] + ([("uv", "<f4", 2)] if mesh.uvs is not None else [])
     vertices = numpy.zeros(len(mesh.positions), fields)
     vertices["position"] = mesh.positions
     names = ["x", "y", "z"]
     if mesh.uvs is not None:
-        vertices["uv"] = mesh.uvs * numpy.float32([1, -1]) + numpy.float32([0, 1])
+        vertices["uv"] = mesh.uvs
         names += ["u", "v"]
     faces = numpy.zeros(len(mesh.triangles), [("n", "u1"), ("v", "<i4", 3)])
     faces["n"], faces["v"] = 3, mesh.triangles

@@ -101,6 +101,32 @@ def write_spheres(triangles):
     return write
 
 
+def write_lamps(side):
+    """A writer of the room, its lamp replaced by side × side small ones, of 1/4 of the ceiling's area together."""
+
+    def write(folder):
+        document = room(blocks=True)
+        keep = [i for i in document.json["scenes"][0]["nodes"] if document.json["nodes"][i]["name"] != "lamp"]
+        document.json["scenes"][0]["nodes"] = keep
+        names = [material["name"] for material in document.json["materials"]]
+        document.add_mesh("lamps", *grid_of_quads(side), names.index("lamp"))
+        document.write(folder)
+
+    return write
+
+
+def grid_of_quads(side):
+    """side × side quads that face down, a little below the ceiling."""
+    cell, h = 2.4 / side, cornell_box.H
+    centre = -1.2 + cell * (numpy.arange(side) + 0.5)
+    x, z = (grid.ravel() for grid in numpy.meshgrid(centre, centre, indexing="ij"))
+    r, y = cell / 4, numpy.full(side * side, 2 * h - 0.01)
+    corners = [numpy.stack([x + a * r, y, z + b * r], axis=1) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    first = numpy.arange(side * side)[:, None] * 4
+    faces = numpy.concatenate([first + [0, 1, 2], first + [0, 2, 3]])
+    return numpy.stack(corners, axis=1).reshape(-1, 3), faces
+
+
 def bumpy_spheres(triangles):
     """Ten spheres, each a cube of 6 n² quads pushed out, with bumps of two sizes. The shape is the same for all n."""
     side = max(1, round((triangles / SPHERES / 12) ** 0.5))

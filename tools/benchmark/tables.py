@@ -25,6 +25,8 @@ def comparison(report):
             f"p {verdict['smallest_p']:.1e} ≥ {verdict['p_limit']:.1e}; sees "
             f"{100 * verdict['smallest_bias_seen_picture']:.2g}% |"
         )
+    if report["left_out"]:
+        lines += ["", f"Left out, for want of the folder of assets (ETENDUE_SHARED): {', '.join(report['left_out'])}."]
     lines += ["", "Before the first sample, seconds:", "", "| scene | étendue load | build | upload | compile | peer | load and build | first render's extra |", "|---|---|---|---|---|---|---|---|"]
     for row in report["rows"]:
         if "error" not in row:
