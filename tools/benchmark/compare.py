@@ -54,8 +54,6 @@ class Row:
         self.path = scene_writer.path_of(scene)
         self.ours = Etendue(settings.etendue, self.path, settings.threads)
         self.peer = open_peer(peer, self.path, settings.threads)
-        self.sampler = {}
-        self.seed = 0
 
     def close(self):
         self.peer.close()
@@ -97,7 +95,7 @@ class Row:
             return row | {"error": not_comparable(verdict)}
         self.reference_mean = theirs.mean(axis=0, dtype=numpy.float64)
         self.reference_variance = theirs.var(axis=0, ddof=1, dtype=numpy.float64) / len(theirs)
-        return row | self.speed() | self.efficiency() | {"etendue": self.ours.about, "other": self.peer.about}
+        return row | self.measure_rounds() | {"etendue": self.ours.about, "other": self.peer.about}
 
     def triangles(self):
         document = json.loads(self.path.read_text(encoding="utf-8"))
@@ -105,50 +103,47 @@ class Row:
                   for i, mesh in enumerate(document["meshes"])}
         return sum(counts[node["mesh"]] for node in document["nodes"] if "mesh" in node)
 
-    def rounds(self, ours, theirs):
-        """Pairs of (ours, theirs), each drawn in turn; who begins changes."""
-        pairs = []
+    def draw_timed(self, renderer, seed, **more):
+        """(seconds, efficiency) of one render."""
+        answer, picture = self.draw(renderer, self.settings.spp, 5000 + seed, **more)
+        error = agreement.relative_mse(picture, self.reference_mean, self.reference_variance)
+        if error <= 0:
+            raise BenchError(f"{self.scene}: the reference is too noisy to measure the error; raise --batch-spp", 1)
+        return answer["seconds"], 1 / (error * answer["seconds"])
+
+    def rounds(self, best):
+        """For each round (ours, theirs, theirs with its best sampler), drawn in turn; who begins changes."""
+        drawn = []
         for i in range(self.settings.rounds):
             install.say(f"{self.scene} against {self.name}: round {i + 1} of {self.settings.rounds}")
-            self.seed += 1
-            both = {}
-            for who in ("ours", "theirs") if i % 2 == 0 else ("theirs", "ours"):
-                both[who] = ours(self.seed) if who == "ours" else theirs(self.seed)
-            pairs.append((both["ours"], both["theirs"]))
-        return pairs
+            turns = [("ours", self.ours, {}), ("theirs", self.peer, {})]
+            turns += [("best", self.peer, best)] if best != self.default_sampler() else []
+            both = {name: self.draw_timed(who, i, **more) for name, who, more in turns[:: 1 if i % 2 == 0 else -1]}
+            drawn.append((both["ours"], both["theirs"], both.get("best", both["theirs"])))
+        return drawn
 
-    def speed(self):
-        """Paths per second at the same number of samples; each renderer with its default sampler."""
+    def measure_rounds(self):
+        """Speed at the same number of samples with default samplers, and 1 / (relMSE · seconds) with the best one."""
         spp, paths = self.settings.spp, self.settings.size**2 * self.settings.spp
         first = self.draw(self.peer, spp, 0)[0]["seconds"]
         self.draw(self.ours, 1, 0)
-        pairs = self.rounds(lambda seed: self.draw(self.ours, spp, seed)[0]["seconds"],
-                            lambda seed: self.draw(self.peer, spp, seed)[0]["seconds"])
-        ours, theirs = zip(*pairs)
+        best = self.best_sampler()
+        drawn = self.rounds(best)
+        ours, theirs = ([one[who][0] for one in drawn] for who in (0, 1))
         self.peer.about["first_render_extra"] = first - statistics.median(theirs)
         return {
             "spp": spp,
             "etendue_paths_per_second": paths / statistics.median(ours),
             "peer_paths_per_second": paths / statistics.median(theirs),
-            "speed": statistics.summary([b / a for a, b in pairs]),
+            "speed": statistics.summary([b / a for a, b in zip(ours, theirs)]),
+            "etendue_efficiency": statistics.median([one[0][1] for one in drawn]),
+            "peer_efficiency": statistics.median([one[2][1] for one in drawn]),
+            "efficiency": statistics.summary([one[0][1] / one[2][1] for one in drawn]),
+            "peer_sampler": best.get("sampler", "default"),
         }
 
-    def efficiency(self):
-        """1 / (relMSE · seconds), ours over theirs."""
-        best = self.best_sampler()
-        pairs = self.rounds(lambda seed: self.efficiency_of(self.ours, seed),
-                            lambda seed: self.efficiency_of(self.peer, seed, **best))
-        ours, theirs = zip(*pairs)
-        result = {"etendue_efficiency": statistics.median(ours), "peer_efficiency": statistics.median(theirs)}
-        return result | {"peer_sampler": best.get("sampler", "default"),
-                         "efficiency": statistics.summary([a / b for a, b in pairs])}
-
-    def efficiency_of(self, renderer, seed, **more):
-        answer, picture = self.draw(renderer, self.settings.spp, 5000 + seed, **more)
-        error = agreement.relative_mse(picture, self.reference_mean, self.reference_variance)
-        if error <= 0:
-            raise BenchError(f"{self.scene}: the reference is too noisy to measure the error; raise --batch-spp", 1)
-        return 1 / (error * answer["seconds"])
+    def default_sampler(self):
+        return {"sampler": MITSUBA_SAMPLERS[0]} if self.name == "mitsuba" else {}
 
     def best_sampler(self):
         """The peer's own sampler that serves it best here, by one render of each after a warm-up."""
@@ -156,8 +151,8 @@ class Row:
             return {}
         scores = {}
         for sampler in MITSUBA_SAMPLERS:
-            self.efficiency_of(self.peer, 1, sampler=sampler)
-            scores[sampler] = self.efficiency_of(self.peer, 2, sampler=sampler)
+            self.draw_timed(self.peer, 1000, sampler=sampler)
+            scores[sampler] = self.draw_timed(self.peer, 1001, sampler=sampler)[1]
         return {"sampler": max(scores, key=scores.get)}
 
 
