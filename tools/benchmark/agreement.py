@@ -20,20 +20,16 @@ def tiles(batches):
     return numpy.concatenate([small, batches.mean(axis=(1, 2), dtype=numpy.float64)[:, None]], axis=1)
 
 
-def compare(ours, theirs, tolerance=0.0):
-    """A verdict on two stacks of batches, (batches, height, width, 3).
-
-    tolerance: relative difference of a tile's mean, with respect to the picture's mean, that is let pass because
-    renderers differ there by design; 0: none.
-    """
+def compare(ours, theirs):
+    """A verdict on two stacks of batches, (batches, height, width, 3)."""
     a, b = tiles(ours), tiles(theirs)
     difference = a.mean(axis=0) - b.mean(axis=0)
     va, vb = a.var(axis=0, ddof=1) / len(a), b.var(axis=0, ddof=1) / len(b)
     error = numpy.sqrt(va + vb)
     freedom = (va + vb) ** 2 / numpy.maximum(va**2 / (len(a) - 1) + vb**2 / (len(b) - 1), 1e-300)
     level = b[:, -1].mean(axis=0)
-    excess = numpy.maximum(numpy.abs(difference) - tolerance * level, 0)
-    t = excess / numpy.maximum(error, 1e-6 * level)
+    # Black tiles have no variance: rounding is let pass.
+    t = numpy.abs(difference) / numpy.maximum(error, 1e-6 * level)
     worst = numpy.unravel_index(numpy.argmax(t), t.shape)
     p = min(statistics.student_p(float(x), float(n)) for x, n in zip(t.ravel(), numpy.maximum(freedom, 1).ravel()))
     limit = FALSE_ALARM / t.size
@@ -49,7 +45,6 @@ def compare(ours, theirs, tolerance=0.0):
         "relative_difference_of_means": (difference[-1] / level).tolist(),
         "smallest_bias_seen_picture": float((smallest * error[-1] / level).max()),
         "smallest_bias_seen_tile": float(numpy.median(smallest * error[:-1].mean(axis=1) / level.mean())),
-        "tolerance": tolerance,
         "batches": [len(a), len(b)],
     }
 

@@ -9,7 +9,9 @@ import struct
 
 import numpy
 
+from . import camera
 from .places import BenchError, shared_assets
+from .scene_reader import COMPONENTS, WIDTHS
 
 NAMES = {
     "flight-helmet": ("FlightHelmet/FlightHelmet.gltf", "brown_photostudio_02_1k.hdr"),
@@ -30,7 +32,7 @@ def writer_of(name):
 def write(model, environment, target):
     """Writes scene.gltf, scene.bin, the textures and environment.exr."""
     source, buffers, images = load(model)
-    Variant(source, buffers, images, model.parent, target).write()
+    Variant(source, buffers, images, target).write()
     write_environment(environment, target / "environment.exr")
 
 
@@ -59,8 +61,8 @@ def load(path):
 class Variant:
     """A new document with the old geometry and base colours."""
 
-    def __init__(self, source, buffers, image, folder, target):
-        self.source, self.buffers, self.image, self.folder, self.target = source, buffers, image, folder, target
+    def __init__(self, source, buffers, image, target):
+        self.source, self.buffers, self.image, self.target = source, buffers, image, target
         self.data, self.json = bytearray(), {"asset": {"version": "2.0"}, "scene": 0}
         self.box = [numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)]
 
@@ -69,8 +71,6 @@ class Variant:
         return len(self.json[kind]) - 1
 
     def array(self, index):
-        from .scene_reader import COMPONENTS, WIDTHS
-
         accessor = self.source["accessors"][index]
         view = self.source["bufferViews"][accessor["bufferView"]]
         dtype, width = numpy.dtype(COMPONENTS[accessor["componentType"]]), WIDTHS[accessor["type"]]
@@ -90,8 +90,6 @@ class Variant:
         return self.add("accessors", item)
 
     def visit(self, index, parent):
-        from . import camera
-
         node = self.source["nodes"][index]
         matrix = camera.multiply(parent, camera.of_node(node))
         if "mesh" in node:
@@ -104,7 +102,10 @@ class Variant:
         """Positions go to world space here, so that all renderers get the same floats."""
         positions = self.array(source["attributes"]["POSITION"]).astype(numpy.float64)
         positions = (positions @ matrix[:3, :3].T + matrix[:3, 3]).astype(numpy.float32)
-        self.box = [numpy.minimum(self.box[0], positions.min(axis=0)), numpy.maximum(self.box[1], positions.max(axis=0))]
+        self.box = [
+            numpy.minimum(self.box[0], positions.min(axis=0)),
+            numpy.maximum(self.box[1], positions.max(axis=0)),
+        ]
         attributes = {"POSITION": self.accessor(positions, 5126, "VEC3")}
         material = self.material(source["material"])
         if "baseColorTexture" in self.json["materials"][material]["pbrMetallicRoughness"]:
@@ -152,8 +153,6 @@ class Variant:
 
     def add_camera(self):
         """Looks at the middle of the asset from the front, from where its bounding sphere just fits."""
-        from . import camera
-
         centre, yfov = (self.box[0] + self.box[1]) / 2, 0.6
         radius = numpy.linalg.norm(self.box[1] - self.box[0]) / 2
         direction = numpy.array([0.45, 0.3, 1.0])

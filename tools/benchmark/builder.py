@@ -2,12 +2,22 @@
 
 import subprocess
 
-from . import install, scene_writer, statistics
+from . import install, scene_writer, statistics, tables
 from .peer_etendue import Etendue
 from .places import BenchError
 
 PRESETS = ["fast", "balanced", "best"]
 NOT_REPORTED = "not reported"
+HEADERS = (
+    "scene",
+    "triangles",
+    "preset",
+    "build, s",
+    "structure, bytes a triangle",
+    "device, bytes a triangle",
+    "steps a ray",
+    "Mrays/s",
+)
 
 
 def require_presets(command):
@@ -38,20 +48,33 @@ def row(scene, preset, counted, runs, samples):
     per_sample = rays / (counted["width"] * counted["height"])
     seconds = statistics.median([run["seconds"]["render"] for run in runs])
     return {
-        "scene": scene, "preset": preset, "triangles": counted["triangles"], "device_bytes": counted["device_bytes"],
+        "scene": scene,
+        "preset": preset,
+        "triangles": counted["triangles"],
+        "device_bytes": counted["device_bytes"],
         "build_seconds": statistics.median([run["seconds"]["accel"] for run in runs]),
-        "rays_per_sample": per_sample, "steps_per_ray": counted["rays"].get("steps_per_ray"),
-        "structure_bytes": counted.get("accel_bytes"), "rays_per_second": per_sample * samples / seconds,
+        "rays_per_sample": per_sample,
+        "steps_per_ray": counted["rays"].get("steps_per_ray"),
+        "structure_bytes": counted.get("accel_bytes"),
+        "rays_per_second": per_sample * samples / seconds,
     }
 
 
 def markdown(rows, rounds, spp, size):
-    lines = [f"{size}×{size}, {spp} samples a pixel, medians of {rounds} interleaved rounds.", "",
-             "| scene | triangles | preset | build, s | structure, bytes a triangle | device, bytes a triangle | steps a ray | Mrays/s |",
-             "|---|---|---|---|---|---|---|---|"]
-    for r in rows:
-        each = lambda value: NOT_REPORTED if value is None else f"{value / r['triangles']:.1f}"  # noqa: E731
-        steps = NOT_REPORTED if r["steps_per_ray"] is None else f"{r['steps_per_ray']:.1f}"
-        lines.append(f"| {r['scene']} | {r['triangles']} | {r['preset']} | {r['build_seconds']:.3g} | {each(r['structure_bytes'])} | "
-                     f"{each(r['device_bytes'])} | {steps} | {r['rays_per_second'] / 1e6:.4g} |")
-    return "\n".join(lines) + "\n"
+    lines = [f"{size}×{size}, {spp} samples a pixel, medians of {rounds} interleaved rounds.", ""]
+    return "\n".join([*lines, *tables.table(HEADERS, map(cells, rows))]) + "\n"
+
+
+def cells(row):
+    each = lambda value: NOT_REPORTED if value is None else f"{value / row['triangles']:.1f}"  # noqa: E731
+    steps = NOT_REPORTED if row["steps_per_ray"] is None else f"{row['steps_per_ray']:.1f}"
+    return [
+        row["scene"],
+        row["triangles"],
+        row["preset"],
+        f"{row['build_seconds']:.3g}",
+        each(row["structure_bytes"]),
+        each(row["device_bytes"]),
+        steps,
+        tables.rate(row["rays_per_second"]),
+    ]

@@ -10,9 +10,14 @@ from .places import BenchError
 
 
 def parser():
-    top = argparse.ArgumentParser(prog="tools/bench", description="Measures étendue against its peers.",
-                                  epilog="Also: tools/bench scaling, tools/bench gpu, tools/bench bvh; each has --help.")
-    top.add_argument("--scenes", default="", help=f"comma-separated: {', '.join(scene_writer.NAMES)} (default: all that can be had)")
+    top = argparse.ArgumentParser(
+        prog="tools/bench",
+        description="Measures étendue against its peers.",
+        epilog="Also: tools/bench scaling, tools/bench gpu, tools/bench bvh; each has --help.",
+    )
+    top.add_argument(
+        "--scenes", default="", help=f"comma-separated: {', '.join(scene_writer.NAMES)} (default: all that can be had)"
+    )
     top.add_argument("--peers", default="mitsuba,cycles", help="comma-separated: %(default)s")
     top.add_argument("--rounds", type=int, default=5, help="interleaved rounds (default %(default)s)")
     top.add_argument("--spp", type=int, default=16, help="samples a pixel of a timed render (default %(default)s)")
@@ -41,8 +46,16 @@ def command_of(options):
 
 
 def settings_of(options):
-    s = compare.Settings(command_of(options), options.size, 8, options.spp, options.rounds, options.batches,
-                         options.batch_spp, options.threads)
+    s = compare.Settings(
+        command_of(options),
+        options.size,
+        8,
+        options.spp,
+        options.rounds,
+        options.batches,
+        options.batch_spp,
+        options.threads,
+    )
     if options.quick:
         s.size, s.rounds, s.spp, s.batches, s.batch_spp = 256, 3, 4, 8, 8
     return s
@@ -50,11 +63,16 @@ def settings_of(options):
 
 def compare_all(options):
     settings = settings_of(options)
-    report = {"settings": {k: v for k, v in vars(settings).items() if k != "etendue"}, "rows": [], "driver": "", "peers": []}
+    report = {
+        "settings": {k: v for k, v in vars(settings).items() if k != "etendue"},
+        "rows": [],
+        "driver": "",
+        "peers": [],
+    }
     report["left_out"] = [] if options.scenes or places.shared_assets() else list(assets.NAMES)
     everything = [name for name in scene_writer.NAMES if name not in report["left_out"]]
     for scene in split(options.scenes, scene_writer.NAMES, "--scenes") or everything:
-        for peer in split(options.peers, list(compare.TOLERANCES), "--peers"):
+        for peer in split(options.peers, compare.PEERS, "--peers"):
             row = compare.measure(settings, scene, peer)
             report["rows"].append(row)
             report["driver"] = row.get("etendue", {}).get("driver", report["driver"])
@@ -86,12 +104,16 @@ def measure_scaling(arguments):
     top.add_argument("--rounds", type=int, default=3)
     top.add_argument("--threads", type=int, default=places.threads())
     top.add_argument("--triangles", type=int, default=10**7, help="the most (default %(default)s)")
-    top.add_argument("--samples", type=int, default=1, help="multiplies the samples of all points (default %(default)s)")
+    top.add_argument(
+        "--samples", type=int, default=1, help="multiplies the samples of all points (default %(default)s)"
+    )
     top.add_argument("--svg", type=pathlib.Path, metavar="FILE", help="a plot")
     add_device(top)
     options = top.parse_args(arguments)
     rows = scaling.measure(command_of(options), options.threads, options.rounds, options.triangles, options.samples)
-    table = scaling.markdown(rows, f"étendue, {options.threads} threads, medians of {options.rounds} interleaved rounds.")
+    table = scaling.markdown(
+        rows, f"étendue, {options.threads} threads, medians of {options.rounds} interleaved rounds."
+    )
     if options.svg:
         options.svg.write_text(scaling.svg(rows), encoding="utf-8")
     return finish(options, rows, table)

@@ -3,14 +3,18 @@
 Rays are counted by `--stats` in a render of their own, since counting costs time, and timed without it.
 """
 
-from . import install, scene_writer, statistics
+from . import install, scene_writer, statistics, tables
 from .peer_etendue import Etendue
 
 SIZE = (1920, 1080)
 # integrator, flags, what is traced.
 PASSES = {
     "primary": ("normals", {}, "one closest-hit ray a sample"),
-    "ambient, closest hit": ("path_bsdf", {"max_depth": 2, "env": "1"}, "the same, and a closest-hit ray in a cosine-weighted direction"),
+    "ambient, closest hit": (
+        "path_bsdf",
+        {"max_depth": 2, "env": "1"},
+        "the same, and a closest-hit ray in a cosine-weighted direction",
+    ),
     "ambient, any hit": ("ao", {}, "the same, but any hit ends the second ray"),
     "path": ("path", {"max_depth": 8}, "whole paths"),
 }
@@ -38,18 +42,31 @@ def row(scene, name, rays, seconds, spp, about):
     samples = SIZE[0] * SIZE[1] * spp
     middle = statistics.median(seconds)
     return {
-        "scene": scene, "pass": name, "rays_per_sample": rays, "seconds": list(seconds),
-        "rays_per_second": rays * samples / middle, "paths_per_second": samples / middle,
-        "slowest": rays * samples / max(seconds), "fastest": rays * samples / min(seconds),
-        "device": about["device"], "driver": about["driver"],
+        "scene": scene,
+        "pass": name,
+        "rays_per_sample": rays,
+        "seconds": list(seconds),
+        "rays_per_second": rays * samples / middle,
+        "paths_per_second": samples / middle,
+        "slowest": rays * samples / max(seconds),
+        "fastest": rays * samples / min(seconds),
+        "device": about["device"],
+        "driver": about["driver"],
     }
 
 
 def markdown(rows, rounds, spp):
-    lines = [f"1920×1080, {spp} samples a pixel, medians (slowest to fastest) of {rounds} rounds, on {rows[0]['device']}, {rows[0]['driver']}.", ""]
-    lines += ["| scene | pass | rays a sample | Mrays/s | Mpaths/s |", "|---|---|---|---|---|"]
-    for r in rows:
-        rate, low, high = (r[key] / 1e6 for key in ("rays_per_second", "slowest", "fastest"))
-        lines.append(f"| {r['scene']} | {r['pass']} | {r['rays_per_sample']:.2f} | {rate:.4g} ({low:.4g} to {high:.4g}) | {r['paths_per_second'] / 1e6:.4g} |")
-    lines += ["", *(f"- {name}: `--integrator {integrator}`, {what}." for name, (integrator, _, what) in PASSES.items())]
+    where = f"{rows[0]['device']}, {rows[0]['driver']}"
+    lines = [f"1920×1080, {spp} samples a pixel, medians (slowest to fastest) of {rounds} rounds, on {where}.", ""]
+    lines += tables.table(("scene", "pass", "rays a sample", "Mrays/s", "Mpaths/s"), map(cells, rows))
+    lines += [
+        "",
+        *(f"- {name}: `--integrator {integrator}`, {what}." for name, (integrator, _, what) in PASSES.items()),
+    ]
     return "\n".join(lines) + "\n"
+
+
+def cells(row):
+    spread = f"({tables.rate(row['slowest'])} to {tables.rate(row['fastest'])})"
+    rays = f"{tables.rate(row['rays_per_second'])} {spread}"
+    return [row["scene"], row["pass"], f"{row['rays_per_sample']:.2f}", rays, tables.rate(row["paths_per_second"])]

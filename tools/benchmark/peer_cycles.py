@@ -1,5 +1,6 @@
 """Cycles (PyPI bpy) behind a pipe: reads a JSON request a line from stdin, writes a JSON answer a line to stdout."""
 
+import math
 import os
 import re
 import sys
@@ -109,8 +110,9 @@ def add_material(source):
         strength = max(source.radiance)
         shader.inputs["Color"].default_value = [x / strength for x in source.radiance] + [1]
         shader.inputs["Strength"].default_value = strength
+    elif source.alpha is not None:
+        shader = add_metal(nodes, source)
     else:
-        material.cycles.emission_sampling = "NONE"
         shader = nodes.new("ShaderNodeBsdfDiffuse")
         shader.inputs["Roughness"].default_value = 0
         shader.inputs["Color"].default_value = [*source.color, 1]
@@ -118,6 +120,17 @@ def add_material(source):
             links.new(add_texture(nodes, source.texture).outputs["Color"], shader.inputs["Color"])
     links.new(shader.outputs[0], output.inputs["Surface"])
     return material
+
+
+def add_metal(nodes, source):
+    """Schlick's Fresnel term (a white edge tint changes nothing) over single-scattering GGX."""
+    shader = nodes.new("ShaderNodeBsdfPrincipled")
+    shader.distribution = "GGX"
+    shader.inputs["Metallic"].default_value = 1
+    shader.inputs["Roughness"].default_value = math.sqrt(source.alpha)
+    shader.inputs["Base Color"].default_value = [*source.color, 1]
+    shader.inputs["Specular Tint"].default_value = (1, 1, 1, 1)
+    return shader
 
 
 def add_texture(nodes, path):

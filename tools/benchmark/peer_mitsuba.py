@@ -9,9 +9,8 @@ import drjit
 import mitsuba
 import numpy
 
-from . import camera, protocol, scene_reader
-
-mitsuba.set_variant("llvm_ad_rgb")
+from . import camera, mitsuba_metal, protocol, scene_reader
+from .places import NotComparable
 
 
 class Peer:
@@ -76,10 +75,12 @@ def bsdf(material):
     reflectance = rgb(material.color)
     if material.texture:
         if material.color != [1, 1, 1]:
-            raise scene_reader.NotComparable("a texture times a factor has no counterpart in Mitsuba")
+            raise NotComparable("a texture times a factor has no counterpart in Mitsuba")
         reflectance = {"type": "bitmap", "filename": str(material.texture), "filter_type": "nearest"}
-    lambertian = {"type": "diffuse", "reflectance": reflectance}
-    return {"type": "twosided", "bsdf": lambertian} if material.double_sided else lambertian
+    plain = {"type": "diffuse", "reflectance": reflectance}
+    if material.alpha is not None:
+        plain = {"type": mitsuba_metal.NAME, "alpha": material.alpha, "specular": rgb(material.color)}
+    return {"type": "twosided", "bsdf": plain} if material.double_sided else plain
 
 
 def write_ply(path, mesh):
@@ -111,7 +112,7 @@ def environment(path):
     texels = numpy.array(mitsuba.Bitmap(str(path)), dtype=numpy.float32)
     height, width = texels.shape[:2]
     if width % 4:
-        raise scene_reader.NotComparable("the environment's width is no multiple of 4")
+        raise NotComparable("the environment's width is no multiple of 4")
     rows = numpy.empty((2 * height + 1, width, 3), numpy.float32)
     rows[1::2] = texels
     rows[2:-1:2] = (texels[1:] + texels[:-1]) / 2

@@ -8,11 +8,15 @@ REPOSITORY = TOOLS.parent
 
 
 class BenchError(Exception):
-    """Something that the user must change; the text says what. `code` is the exit code: 2 input, 3 device or machine."""
+    """What the user must change, in a sentence. code: the exit code, 2 for input, 3 for device or machine."""
 
     def __init__(self, text, code=2):
         super().__init__(text)
         self.code = code
+
+
+class NotComparable(Exception):
+    """The scene has something that a peer has no exact counterpart of."""
 
 
 def cache():

@@ -23,7 +23,9 @@ class Axis:
     def ticks(self):
         """Powers of ten; where fewer than two of them lie inside, 1, 2 and 5 times them."""
         decades = range(math.floor(self.low), math.ceil(self.high) + 1)
-        inside = lambda steps: [s * 10.0**d for d in decades for s in steps if self.low <= math.log10(s) + d <= self.high]  # noqa: E731
+        inside = lambda steps: [
+            s * 10.0**d for d in decades for s in steps if self.low <= math.log10(s) + d <= self.high
+        ]  # noqa: E731
         tens = inside([1])
         return tens if len(tens) >= 2 else inside([1, 2, 5])
 
@@ -38,9 +40,15 @@ def panel(title, x_label, y_label, series, left, top):
     parts += [text(left + LEFT, top + TOP - 4, y_label, "start", 10)]
     parts.append(f'<rect x="{x.a}" y="{y.b}" width="{x.b - x.a}" height="{y.a - y.b}" fill="none" stroke="#999"/>')
     for tick in x.ticks():
-        parts += [line([(x.at(tick), y.a), (x.at(tick), y.b)], "#ddd"), text(x.at(tick), y.a + 14, label(tick), "middle", 10)]
+        parts += [
+            line([(x.at(tick), y.a), (x.at(tick), y.b)], "#ddd"),
+            text(x.at(tick), y.a + 14, label(tick), "middle", 10),
+        ]
     for tick in y.ticks():
-        parts += [line([(x.a, y.at(tick)), (x.b, y.at(tick))], "#ddd"), text(x.a - 5, y.at(tick) + 4, label(tick), "end", 10)]
+        parts += [
+            line([(x.a, y.at(tick)), (x.b, y.at(tick))], "#ddd"),
+            text(x.a - 5, y.at(tick) + 4, label(tick), "end", 10),
+        ]
     for name, colour, dashed, values in series:
         places = [(x.at(a), y.at(b)) for a, b in values]
         parts.append(line(places, colour, dashed, name))
@@ -65,9 +73,11 @@ def label(value):
 
 def page(panels, columns=3):
     """An SVG of panels, each (title, x_label, y_label, series)."""
-    rows = -(-len(panels) // columns)
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{columns * WIDTH}" height="{rows * HEIGHT}" font-family="sans-serif">',
-             '<rect width="100%" height="100%" fill="white"/>']
+    width, height = columns * WIDTH, -(-len(panels) // columns) * HEIGHT
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="sans-serif">',
+        '<rect width="100%" height="100%" fill="white"/>',
+    ]
     for i, one in enumerate(panels):
         parts += panel(*one, left=i % columns * WIDTH, top=i // columns * HEIGHT)
     return "\n".join([*parts, "</svg>"]) + "\n"

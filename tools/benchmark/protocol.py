@@ -6,7 +6,7 @@ import subprocess
 import sys
 import traceback
 
-from .places import BenchError
+from .places import BenchError, NotComparable
 
 
 def serve(peer_class, arguments):
@@ -24,6 +24,8 @@ def serve(peer_class, arguments):
                 answer = peer.about()
             else:
                 answer = peer.render(**request)
+        except NotComparable as error:
+            answer = {"not_comparable": str(error)}
         except Exception as error:  # noqa: BLE001: whatever it is goes to the other side.
             traceback.print_exc()
             answer = {"error": f"{type(error).__name__}: {error}"}
@@ -57,6 +59,8 @@ class Remote:
     def answer(self):
         line = self.process.stdout.readline()
         answer = json.loads(line) if line else {"error": f"it ended with exit code {self.process.wait()}"}
+        if "not_comparable" in answer:
+            raise NotComparable(answer["not_comparable"])
         if "error" in answer:
             raise BenchError(f"{self.name}: {answer['error']}; its output is in {self.log}", 3)
         return answer

@@ -39,15 +39,30 @@ def axes(threads, most_triangles, scale):
     cores = sorted({1 << i for i in range(threads.bit_length()) if 1 << i <= threads} | {threads})
     logarithm = lambda x: math.log2(x)  # noqa: E731
     return [
-        Axis("triangles", "triangles", [Point(n, f"spheres:{n}", 256, 4 * scale) for n in spheres],
-             "log n: the depth of a tree; more where it leaves the caches", logarithm),
+        Axis(
+            "triangles",
+            "triangles",
+            [Point(n, f"spheres:{n}", 256, 4 * scale) for n in spheres],
+            "log n: the depth of a tree; more where it leaves the caches",
+            logarithm,
+        ),
         Axis("pixels", "pixels", [Point(s * s, size=s, spp=4 * scale) for s in (64, 128, 256, 512, 1024)], "n", float),
         Axis("samples", "samples a pixel", [Point(n, spp=n) for n in (1, 4, 16, 64)], "n", float),
         Axis("cores", "threads", [Point(n, spp=8 * scale, threads=n) for n in cores], "1 / n", lambda x: 1 / x),
-        Axis("lights", "emissive triangles", [Point(2 * k * k, f"lamps:{k}", 256, 4 * scale) for k in (1, 4, 16, 64, 256)],
-             "1 for choosing one (alias table), log n for the rays that meet them", lambda x: 1.0),
-        Axis("depth", "edges", [Point(n, spp=4 * scale, more={"max_depth": n} | NO_ROULETTE) for n in (1, 2, 4, 8, 16, 32)],
-             "at most n: paths end where they leave the room", float),
+        Axis(
+            "lights",
+            "emissive triangles",
+            [Point(2 * k * k, f"lamps:{k}", 256, 4 * scale) for k in (1, 4, 16, 64, 256)],
+            "1 for choosing one (alias table), log n for the rays that meet them",
+            lambda x: 1.0,
+        ),
+        Axis(
+            "depth",
+            "edges",
+            [Point(n, spp=4 * scale, more={"max_depth": n} | NO_ROULETTE) for n in (1, 2, 4, 8, 16, 32)],
+            "at most n: paths end where they leave the room",
+            float,
+        ),
     ]
 
 
@@ -83,10 +98,15 @@ def summary(axis, runs):
     seconds = [statistics.median([run["render"] for run in times]) for times in runs]
     build = [statistics.median([run["accel"] for run in times]) for times in runs]
     law = [axis.law(a) for a in x]
-    # The law's factor: that of the last point, where constant costs weigh least.
-    factor = seconds[-1] / law[-1]
+    # The law's factor fits all points best on logarithmic axes.
+    factor = math.exp(sum(math.log(a / b) for a, b in zip(seconds, law)) / len(law))
     return {
-        "axis": axis.name, "unit": axis.unit, "law": axis.words, "x": x, "seconds": seconds, "build_seconds": build,
+        "axis": axis.name,
+        "unit": axis.unit,
+        "law": axis.words,
+        "x": x,
+        "seconds": seconds,
+        "build_seconds": build,
         "expected": [factor * value for value in law],
         "exponent": statistics.power_law(x, seconds) if len(x) > 1 else None,
         "last_exponent": statistics.power_law(x[-2:], seconds[-2:]) if len(x) > 1 else None,
@@ -96,9 +116,15 @@ def summary(axis, runs):
 def markdown(report, about):
     lines = [about, ""]
     for axis in report:
-        lines += [f"**{axis['axis']}**: expected {axis['law']}; a power law fits with exponent {axis['exponent']:.2f}, "
-                  f"over the last two points {axis['last_exponent']:.2f}.", ""]
-        lines += [f"| {axis['unit']} | " + " | ".join(f"{x:,}" for x in axis["x"]) + " |", "|---" * (len(axis["x"]) + 1) + "|"]
+        lines += [
+            f"**{axis['axis']}**: expected {axis['law']}; a power law fits with exponent {axis['exponent']:.2f}, "
+            f"over the last two points {axis['last_exponent']:.2f}.",
+            "",
+        ]
+        lines += [
+            f"| {axis['unit']} | " + " | ".join(f"{x:,}" for x in axis["x"]) + " |",
+            "|---" * (len(axis["x"]) + 1) + "|",
+        ]
         lines.append("| seconds | " + " | ".join(f"{s:.3g}" for s in axis["seconds"]) + " |")
         lines.append("| the law | " + " | ".join(f"{s:.3g}" for s in axis["expected"]) + " |")
         if axis["axis"] == "triangles":

@@ -11,13 +11,10 @@ from dataclasses import dataclass, field
 import numpy
 
 from . import camera as cameras
+from .places import NotComparable
 
 COMPONENTS = {5121: numpy.uint8, 5123: numpy.uint16, 5125: numpy.uint32, 5126: numpy.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
-
-
-class NotComparable(Exception):
-    """The scene has something that no peer has an exact counterpart of."""
 
 
 @dataclass
@@ -93,7 +90,11 @@ class Reader:
 
     def check(self, source, material, pbr, extensions):
         known = {"KHR_materials_specular", "KHR_materials_emissive_strength"}
-        if set(extensions) - known or {"normalTexture", "emissiveTexture"} & set(source) or "metallicRoughnessTexture" in pbr:
+        if (
+            set(extensions) - known
+            or {"normalTexture", "emissiveTexture"} & set(source)
+            or "metallicRoughnessTexture" in pbr
+        ):
             raise NotComparable(f"material {source['name']!r} has maps or extensions without exact counterparts")
         specular = extensions.get("KHR_materials_specular", {}).get("specularFactor", 1)
         metallic = pbr.get("metallicFactor", 1)

@@ -1,7 +1,8 @@
 """The scenes that are measured, written into the cache as glTF.
 
-All surfaces are flat-shaded and Lambertian (metallic 0, specularFactor 0) or emitters, and textures are looked up
-nearest: this much means the same to all renderers, so that their means can be required to agree.
+All surfaces are flat-shaded, and Lambertian (metallic 0, specularFactor 0), emitters, or, in one scene, metal without
+textures; textures are looked up nearest. This much can mean the same to all renderers, so that their means can be
+required to agree.
 """
 
 import base64
@@ -21,7 +22,7 @@ from .places import TOOLS, cache
 
 SPHERE_TRIANGLES = {"spheres-360k": 360_000, "spheres-2m": 2_000_000, "spheres-8m": 8_000_000}
 SPHERES = 10
-NAMES = ["cornell", *SPHERE_TRIANGLES, *assets.NAMES]
+NAMES = ["cornell", "cornell-lambert", *SPHERE_TRIANGLES, *assets.NAMES]
 
 
 class Document:
@@ -68,14 +69,14 @@ class Document:
         (folder / "scene.gltf").write_text(json.dumps(self.json), encoding="utf-8")
 
 
-def room(blocks):
-    """The Cornell box of scenes/ with flat, Lambertian materials; with its blocks or empty."""
+def room(blocks, metal=False):
+    """The Cornell box of scenes/, flat-shaded; with its blocks or empty, the tall one of metal or Lambertian."""
     document = Document(cornell_box.build().to_json())
     for mesh in document.json["meshes"]:
         for primitive in mesh["primitives"]:
             primitive["attributes"].pop("NORMAL", None)
     for material in document.json["materials"]:
-        if material["pbrMetallicRoughness"]["metallicFactor"] == 1:
+        if material["pbrMetallicRoughness"]["metallicFactor"] == 1 and not metal:
             material["pbrMetallicRoughness"] |= {"metallicFactor": 0, "roughnessFactor": 1}
             material["extensions"] = {"KHR_materials_specular": {"specularFactor": 0}}
     if not blocks:
@@ -85,6 +86,10 @@ def room(blocks):
 
 
 def write_cornell(folder):
+    room(blocks=True, metal=True).write(folder)
+
+
+def write_cornell_lambert(folder):
     room(blocks=True).write(folder)
 
 
@@ -163,9 +168,12 @@ def cube_sphere(side):
     return points / numpy.linalg.norm(points, axis=1, keepdims=True), numpy.concatenate(faces)
 
 
+CORNELL = {"cornell": write_cornell, "cornell-lambert": write_cornell_lambert}
+
+
 def writer_of(name):
-    if name == "cornell":
-        return write_cornell
+    if name in CORNELL:
+        return CORNELL[name]
     if name in SPHERE_TRIANGLES:
         return write_spheres(SPHERE_TRIANGLES[name])
     return assets.writer_of(name)

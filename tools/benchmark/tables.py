@@ -1,7 +1,27 @@
-"""The report as Markdown."""
+"""The report of `tools/bench` as Markdown."""
+
+COMPARISON = (
+    "scene",
+    "triangles",
+    "peer",
+    "étendue Mpath/s",
+    "peer Mpath/s",
+    "speed ratio",
+    "equal-time error ratio",
+    "peer's sampler for it",
+    "agreement",
+)
+START = ("scene", "étendue load", "build", "upload", "compile", "peer", "load and build", "first render's extra")
+
+
+def table(headers, rows):
+    """The lines of a Markdown table."""
+    line = lambda cells: "| " + " | ".join(str(cell) for cell in cells) + " |"  # noqa: E731
+    return [line(headers), "|---" * len(headers) + "|", *map(line, rows)]
 
 
 def rate(value):
+    """Millions a second."""
     return f"{value / 1e6:.3g}"
 
 
@@ -10,36 +30,43 @@ def ratio(entry):
 
 
 def comparison(report):
-    """The table of `tools/bench`."""
-    lines = [about(report), "", "| scene | triangles | peer | étendue Mpath/s | peer Mpath/s | speed ratio | equal-time error ratio | agreement |",
-             "|---|---|---|---|---|---|---|---|"]
-    for row in report["rows"]:
-        head = f"| {row['scene']} | {row.get('triangles', '')} | {row['peer']} |"
-        if "error" in row:
-            lines.append(f"{head} | | | | {row['error']} |")
-            continue
-        verdict = row["agreement"]
-        lines.append(
-            f"{head} {rate(row['etendue_paths_per_second'])} | {rate(row['peer_paths_per_second'])} | "
-            f"{ratio(row['speed'])} | {ratio(row['efficiency'])} ({row['peer_sampler']}) | "
-            f"p {verdict['smallest_p']:.1e} ≥ {verdict['p_limit']:.1e}; sees "
-            f"{100 * verdict['smallest_bias_seen_picture']:.2g}% |"
-        )
+    """All of it."""
+    good = [row for row in report["rows"] if "error" not in row]
+    lines = [about(report), "", *table(COMPARISON, map(compared, report["rows"]))]
     if report["left_out"]:
         lines += ["", f"Left out, for want of the folder of assets (ETENDUE_SHARED): {', '.join(report['left_out'])}."]
-    lines += ["", "Before the first sample, seconds:", "", "| scene | étendue load | build | upload | compile | peer | load and build | first render's extra |", "|---|---|---|---|---|---|---|---|"]
-    for row in report["rows"]:
-        if "error" not in row:
-            ours, other = row["etendue"], row["other"]
-            phases = " | ".join(f"{ours[key]:.2f}" for key in ("load", "accel", "upload", "compile"))
-            lines.append(f"| {row['scene']} | {phases} | {row['peer']} | {other['load']:.2f} | {other['first_render_extra']:.2f} |")
+    lines += ["", "Before the first sample, seconds:", "", *table(START, map(started, good))]
     return "\n".join(lines) + "\n"
+
+
+def compared(row):
+    head = [row["scene"], row["triangles"], row["peer"]]
+    if "error" in row:
+        return [*head, "", "", "", "", "", row["error"]]
+    verdict = row["agreement"]
+    agrees = f"p {verdict['smallest_p']:.1e} ≥ {verdict['p_limit']:.1e}; sees "
+    return [
+        *head,
+        rate(row["etendue_paths_per_second"]),
+        rate(row["peer_paths_per_second"]),
+        ratio(row["speed"]),
+        ratio(row["efficiency"]),
+        row["peer_sampler"],
+        agrees + f"{100 * verdict['smallest_bias_seen_picture']:.2g}%",
+    ]
+
+
+def started(row):
+    ours, other = row["etendue"], row["other"]
+    phases = [f"{ours[key]:.2f}" for key in ("load", "accel", "upload", "compile")]
+    return [row["scene"], *phases, row["peer"], f"{other['load']:.2f}", f"{other['first_render_extra']:.2f}"]
 
 
 def about(report):
     s = report["settings"]
     return (
         f"{s['size']}×{s['size']}, at most {s['max_depth']} edges a path, roulette from bounce 5, box filter, "
-        f"{s['spp']} samples a pixel, {s['threads']} threads; medians of {s['rounds']} interleaved rounds, ratios étendue over "
-        f"peer with an order-statistic interval. Driver: {report['driver']}. Peers: {', '.join(report['peers'])}."
+        f"{s['spp']} samples a pixel, {s['threads']} threads; medians of {s['rounds']} interleaved rounds, ratios "
+        f"étendue over peer with an order-statistic interval. Driver: {report['driver']}. "
+        f"Peers: {', '.join(report['peers'])}."
     )

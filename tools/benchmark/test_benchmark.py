@@ -1,6 +1,6 @@
 """Tests of the parts that can go wrong quietly; the standard library alone.
 
-    cd tools && python3 -m unittest benchmark.test_benchmark
+cd tools && python3 -m unittest benchmark.test_benchmark
 """
 
 import math
