@@ -9,6 +9,22 @@ from . import assets, builder, compare, gpu, peer_etendue, places, scaling, scen
 from .places import BenchError
 
 
+def positive(text):
+    """A whole number from 1 on."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not 1 or more")
+    return value
+
+
+def several(text):
+    """A whole number from 2 on: one picture has no spread."""
+    value = positive(text)
+    if value < 2:
+        raise argparse.ArgumentTypeError(f"{text} is not 2 or more")
+    return value
+
+
 def parser():
     top = argparse.ArgumentParser(
         prog="tools/bench",
@@ -19,12 +35,14 @@ def parser():
         "--scenes", default="", help=f"comma-separated: {', '.join(scene_writer.NAMES)} (default: all that can be had)"
     )
     top.add_argument("--peers", default="mitsuba,cycles", help="comma-separated: %(default)s")
-    top.add_argument("--rounds", type=int, default=5, help="interleaved rounds (default %(default)s)")
-    top.add_argument("--spp", type=int, default=16, help="samples a pixel of a timed render (default %(default)s)")
-    top.add_argument("--size", type=int, default=512, help="width and height (default %(default)s)")
-    top.add_argument("--batches", type=int, default=8, help="pictures of the agreement check (default %(default)s)")
-    top.add_argument("--batch-spp", type=int, default=16, help="samples a pixel of each (default %(default)s)")
-    top.add_argument("--threads", type=int, default=places.threads(), help="for everyone (default: all, %(default)s)")
+    top.add_argument("--rounds", type=positive, default=5, help="interleaved rounds (default %(default)s)")
+    top.add_argument("--spp", type=positive, default=16, help="samples a pixel of a timed render (default %(default)s)")
+    top.add_argument("--size", type=positive, default=512, help="width and height (default %(default)s)")
+    top.add_argument("--batches", type=several, default=8, help="pictures of the agreement check (default %(default)s)")
+    top.add_argument("--batch-spp", type=positive, default=16, help="samples a pixel of each (default %(default)s)")
+    top.add_argument(
+        "--threads", type=positive, default=places.threads(), help="for everyone (default: all, %(default)s)"
+    )
     top.add_argument("--quick", action="store_true", help="3 rounds of 4 samples at 256x256: tries the machinery out")
     add_device(top)
     return top
@@ -101,11 +119,11 @@ def write(options, report, markdown):
 
 def measure_scaling(arguments):
     top = argparse.ArgumentParser(prog="tools/bench scaling", description="Time against the size of the problem.")
-    top.add_argument("--rounds", type=int, default=3)
-    top.add_argument("--threads", type=int, default=places.threads())
-    top.add_argument("--triangles", type=int, default=10**7, help="the most (default %(default)s)")
+    top.add_argument("--rounds", type=positive, default=3)
+    top.add_argument("--threads", type=positive, default=places.threads())
+    top.add_argument("--triangles", type=positive, default=10**7, help="the most (default %(default)s)")
     top.add_argument(
-        "--samples", type=int, default=1, help="multiplies the samples of all points (default %(default)s)"
+        "--samples", type=positive, default=1, help="multiplies the samples of all points (default %(default)s)"
     )
     top.add_argument("--svg", type=pathlib.Path, metavar="FILE", help="a plot")
     add_device(top)
@@ -122,9 +140,9 @@ def measure_scaling(arguments):
 def measure_gpu(arguments):
     top = argparse.ArgumentParser(prog="tools/bench gpu", description="Rays per second at 1080p.")
     top.add_argument("--scenes", default="cornell,spheres-360k,spheres-2m,spheres-8m")
-    top.add_argument("--rounds", type=int, default=5)
-    top.add_argument("--spp", type=int, default=64)
-    top.add_argument("--threads", type=int, default=places.threads())
+    top.add_argument("--rounds", type=positive, default=5)
+    top.add_argument("--spp", type=positive, default=64)
+    top.add_argument("--threads", type=positive, default=places.threads())
     add_device(top)
     options = top.parse_args(arguments)
     scenes = split(options.scenes, scene_writer.NAMES, "--scenes")
@@ -135,10 +153,10 @@ def measure_gpu(arguments):
 def measure_bvh(arguments):
     top = argparse.ArgumentParser(prog="tools/bench bvh", description="The builder's presets.")
     top.add_argument("--scenes", default="spheres-360k,spheres-2m,spheres-8m")
-    top.add_argument("--rounds", type=int, default=5)
-    top.add_argument("--spp", type=int, default=4)
-    top.add_argument("--size", type=int, default=512)
-    top.add_argument("--threads", type=int, default=places.threads())
+    top.add_argument("--rounds", type=positive, default=5)
+    top.add_argument("--spp", type=positive, default=4)
+    top.add_argument("--size", type=positive, default=512)
+    top.add_argument("--threads", type=positive, default=places.threads())
     add_device(top)
     options = top.parse_args(arguments)
     scenes = split(options.scenes, scene_writer.NAMES, "--scenes")

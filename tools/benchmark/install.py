@@ -14,6 +14,7 @@ CYCLES = ["bpy==5.0.1"]
 # The wheels of bpy 5.0 are for this version of Python alone.
 CYCLES_PYTHON = "3.11"
 LLVM_OLDEST = 16
+OLDEST_PYTHON = (3, 11)
 
 
 def say(text):
@@ -47,6 +48,9 @@ def run(command, what):
 
 def toolbox():
     """The interpreter that runs the benchmark itself; it holds Mitsuba, too."""
+    if sys.version_info < OLDEST_PYTHON:
+        wanted, here = (".".join(map(str, version[:2])) for version in (OLDEST_PYTHON, sys.version_info))
+        raise BenchError(f"the pinned numpy needs Python {wanted} or newer, and python3 is {here}", 3)
     return environment("toolbox", sys.executable, TOOLBOX)
 
 
