@@ -12,6 +12,7 @@ use super::materials::materials;
 use super::textures::TextureSet;
 use super::vertex_format::{VertexFormat, VertexNeeds};
 use crate::accel::{BuildOptions, Bvh};
+use crate::host::stages::stage;
 use crate::scene::{Features, LightKind, PunctualLight, Scene};
 
 /// Most triangles that the BVH can count.
@@ -66,8 +67,9 @@ impl Prepared {
             colors: features.colors,
         });
         let origin = scene.cameras[camera].to_world.w_axis.truncate();
-        let mut flat = FlatGeometry::new(scene, &vertex_format, origin);
-        let bvh = Bvh::build(&flat.triangles, options);
+        let flatten = || FlatGeometry::new(scene, &vertex_format, origin);
+        let mut flat = stage("flatten", flatten);
+        let bvh = stage("bvh", || Bvh::build(&flat.triangles, options));
         flat.reorder(&bvh.order);
         let mut textures = TextureSet::default();
         let materials = materials(scene, &mut textures);
