@@ -19,6 +19,7 @@ use super::queue::{Queue, Timing};
 use super::select::select;
 use super::transfer;
 use super::validation::ValidationLog;
+use crate::host::stages::stage;
 
 /// An open device. Clones are the same device; threads that share it take turns.
 #[derive(Clone)]
@@ -44,15 +45,13 @@ impl Device {
     /// # Errors
     /// As [`Device::open`].
     pub fn open_with(selector: Option<&str>, options: OpenOptions) -> Result<Self, GpuError> {
-        let instance = Instance::new(options.validation)?;
-        let mut candidates = instance.candidates()?;
+        let instance = stage("instance", || Instance::new(options.validation))?;
+        let mut candidates = stage("devices", || instance.candidates())?;
         let infos: Vec<_> = candidates.iter().map(|found| &found.info).collect();
         let chosen = select(&infos, selector)?;
-        let logical = Arc::new(Logical::new(
-            instance,
-            candidates.swap_remove(chosen),
-            options.staging,
-        )?);
+        let candidate = candidates.swap_remove(chosen);
+        let create = || Logical::new(instance, candidate, options.staging);
+        let logical = Arc::new(stage("device", create)?);
         let queue = Arc::new(Mutex::new(Queue::new(&logical)?));
         Ok(Self { logical, queue })
     }

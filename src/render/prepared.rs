@@ -14,6 +14,7 @@ use super::materials::materials;
 use super::textures::TextureSet;
 use super::vertex_format::{VertexFormat, VertexNeeds};
 use crate::accel::{BuildOptions, Bvh, Placed};
+use crate::host::stages::stage;
 use crate::scene::{Features, LightKind, PunctualLight, Scene};
 
 /// Most triangles that the BVH can count.
@@ -74,9 +75,10 @@ impl Prepared {
             colors: features.colors,
         });
         let origin = scene.cameras[camera].to_world.w_axis.truncate();
-        let mut flat = FlatGeometry::new(scene, &vertex_format, origin);
+        let flatten = || FlatGeometry::new(scene, &vertex_format, origin);
+        let mut flat = stage("flatten", flatten);
         let start = Instant::now();
-        let mut bvh = Bvh::build(&flat.triangles, options);
+        let mut bvh = stage("bvh", || Bvh::build(&flat.triangles, options));
         let bvh_time = start.elapsed();
         flat.reorder(&bvh.order);
         let mut textures = TextureSet::default();

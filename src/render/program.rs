@@ -5,9 +5,10 @@ use super::gpu_scene::GpuScene;
 use super::layout::layouts;
 use super::prepared::Prepared;
 use super::settings::Settings;
+use crate::host::stages::stage;
 use crate::scene::Features;
 use crate::shader::{
-    CompileOptions, Compiled, Composed, ShaderLibrary, VirtualFiles, compile, compose,
+    CompileOptions, Compiled, Composed, ShaderLibrary, VirtualFiles, compile_or_recall, compose,
 };
 
 /// The file that holds the entry point.
@@ -24,7 +25,7 @@ pub fn build(
     virtuals: &VirtualFiles,
     settings: &Settings,
 ) -> Result<(Composed, Compiled), RenderError> {
-    let composed = compose(library, virtuals, ENTRY_FILE)?;
+    let composed = stage("compose", || compose(library, virtuals, ENTRY_FILE))?;
     let options = CompileOptions {
         entry_point: ENTRY_POINT,
         checked: settings.checked,
@@ -32,7 +33,8 @@ pub fn build(
         layouts: &layouts(),
         debug_names: false,
     };
-    let compiled = compile(&composed, &options)?;
+    let recall = || compile_or_recall(&composed, &options, library.cache());
+    let compiled = stage("spirv", recall)?;
     Ok((composed, compiled))
 }
 
