@@ -56,6 +56,7 @@ enum Command {
 
 /// Runs the program with the arguments of the process. No panic reaches the user.
 pub fn main() -> ExitCode {
+    crate::gpu::prefer_widest_vectors();
     stages::begin();
     std::panic::set_hook(Box::new(message::internal_error));
     let run = AssertUnwindSafe(|| run(&Cli::parse()));

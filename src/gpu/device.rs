@@ -19,6 +19,7 @@ use super::queue::{Queue, Timing};
 use super::select::select;
 use super::transfer;
 use super::validation::ValidationLog;
+use crate::host::Cache;
 use crate::host::stages::stage;
 
 /// An open device. Clones are the same device; threads that share it take turns.
@@ -93,6 +94,15 @@ impl Device {
         }
         let measured = probe::run(self)?;
         Ok(*self.logical.probe.get_or_init(|| measured))
+    }
+
+    /// Whether its shaders read scattered memory faster in 64-bit integers than in words: measured, and
+    /// kept in `cache` for the next time.
+    ///
+    /// # Errors
+    /// Any of the calls for the measurement.
+    pub fn prefers_doublewords(&self, cache: &Cache) -> Result<bool, GpuError> {
+        probe::loads::prefers_doublewords(self, cache)
     }
 
     /// Makes a buffer of `bytes` bytes (16 for 0), filled with zeros.

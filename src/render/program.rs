@@ -52,7 +52,10 @@ pub fn virtual_files(
     let mut files = choice_files(library, settings)?;
     let constants = constants(scene, settings, count_steps);
     files.insert("features.wgsl".into(), features_wgsl(&constants));
-    files.insert("buffers.wgsl".into(), gpu_scene.buffers_wgsl());
+    files.insert(
+        "buffers.wgsl".into(),
+        gpu_scene.buffers_wgsl(settings.doublewords),
+    );
     let structure = if scene.bvh.depth == 0 { "list" } else { "bvh" };
     if scene.bvh.depth == 0 {
         let text = super::list_wgsl::list_wgsl(&scene.bvh.elements);

@@ -91,6 +91,10 @@ impl<'a> Renderer<'a> {
         let virtuals =
             program::virtual_files(library, settings, prepared, gpu_scene, loop_limit.is_some())?;
         let (composed, compiled) = program::build(library, &virtuals, settings)?;
+        if compiled.uses_int64() && !device.info().int64 {
+            let device = device.info().name.clone();
+            return Err(RenderError::NoInt64 { device });
+        }
         let kinds: Vec<(u32, BindingKind)> = compiled
             .bindings
             .iter()

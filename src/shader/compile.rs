@@ -58,6 +58,20 @@ pub struct Compiled {
     pub warnings: Vec<Diagnostic>,
 }
 
+impl Compiled {
+    /// Whether the device must have 64-bit integers.
+    pub fn uses_int64(&self) -> bool {
+        // OpCapability Int64; capabilities come first, after a header of five words.
+        const CAPABILITY: u32 = 2 << 16 | 17;
+        const INT64: u32 = 11;
+        let instructions = self.spirv.get(5..).unwrap_or_default();
+        let mut capabilities = instructions
+            .chunks_exact(2)
+            .take_while(|w| w[0] == CAPABILITY);
+        capabilities.any(|w| w[1] == INT64)
+    }
+}
+
 /// Compiles the entry point of a composed shader.
 ///
 /// # Errors
