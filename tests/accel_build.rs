@@ -3,7 +3,7 @@
 mod accel_common;
 
 use accel_common::*;
-use etendue::accel::{BuildOptions, Bvh, BvhError, LIST_LIMIT, MAX_DEPTH};
+use etendue::accel::{BuildOptions, Bvh, BvhError, Hit, LIST_LIMIT, MAX_DEPTH};
 use etendue::geometry::Ray;
 use glam::Vec3;
 use proptest::prelude::*;
@@ -65,7 +65,14 @@ fn degenerate_inputs_build_valid_structures() {
             let bvh = build(&triangles, limit);
             let ray = Ray::new(Vec3::new(0.2, 0.2, 5.0), -Vec3::Z);
             let expected = brute_force(&bvh, &triangles, &ray);
-            assert_eq!(bvh.intersect(&ray), expected);
+            let found = bvh.intersect(&ray);
+            if limit == TREE {
+                assert_eq!(found, expected);
+            }
+            // A list may take another of hits that are a rounding apart.
+            let t = |hit: Option<Hit>| hit.map_or(0.0, |hit| hit.t);
+            assert_eq!(found.is_some(), expected.is_some());
+            assert!((t(found) - t(expected)).abs() <= 4.0 * f32::EPSILON * t(expected));
             assert_eq!(bvh.occluded(&ray), expected.is_some());
         }
     }
@@ -92,7 +99,10 @@ fn a_million_coincident_triangles_build_fast_and_evenly() {
     // Every triangle ties: the smallest number wins.
     let hit = bvh.intersect(&Ray::new(Vec3::new(0.2, 0.2, 1.0), -Vec3::Z));
     let smallest = bvh.order.iter().map(|placed| placed.id).min();
-    assert_eq!(hit.map(|hit| (hit.t, Some(hit.triangle))), Some((1.0, smallest)));
+    assert_eq!(
+        hit.map(|hit| (hit.t, Some(hit.triangle))),
+        Some((1.0, smallest))
+    );
 }
 
 /// A measurement: `cargo test --release --test accel_build -- --ignored --nocapture`.
@@ -163,7 +173,8 @@ fn broken_of(limit: usize, break_it: impl Fn(&mut Bvh)) -> BvhError {
     let triangles = [soup(40, 0.2, 11), cube(2)].concat();
     let mut bvh = build(&triangles, limit);
     break_it(&mut bvh);
-    bvh.validate(&triangles).expect_err("the structure is broken")
+    bvh.validate(&triangles)
+        .expect_err("the structure is broken")
 }
 
 fn broken(break_it: impl Fn(&mut Bvh)) -> BvhError {
@@ -183,13 +194,36 @@ fn a_pair(bvh: &Bvh) -> usize {
 fn the_validator_finds_broken_links() {
     assert_eq!(broken(|b| b.elements.clear()), BvhError::NoRoot);
     let error = broken(|b| b.elements[0].words[HEADER] = 1000 << 4);
-    assert!(matches!(error, BvhError::Children { node: 0, first: 1000, .. }), "{error}");
+    assert!(
+        matches!(
+            error,
+            BvhError::Children {
+                node: 0,
+                first: 1000,
+                ..
+            }
+        ),
+        "{error}"
+    );
     assert!(error.to_string().contains("elements 1000 to"), "{error}");
     // A cycle: the root's children are the root and so on.
     let error = broken(|b| b.elements[0].words[HEADER] &= 15);
-    assert!(matches!(error, BvhError::SharedChild { node: 0, child: 0 }), "{error}");
+    assert!(
+        matches!(error, BvhError::SharedChild { node: 0, child: 0 }),
+        "{error}"
+    );
     let error = broken(|b| b.elements[0].words[HEADER] |= 15);
-    assert!(matches!(error, BvhError::InnerCount { node: 0, inner: 15, .. }), "{error}");
+    assert!(
+        matches!(
+            error,
+            BvhError::InnerCount {
+                node: 0,
+                inner: 15,
+                ..
+            }
+        ),
+        "{error}"
+    );
     let error = broken(|b| b.elements.push(b.elements[1]));
     assert!(matches!(error, BvhError::Unreachable { .. }), "{error}");
     // A node taken for a pair: what is below it is lost.
@@ -214,19 +248,40 @@ fn the_validator_finds_broken_pairs() {
             );
         }
         let error = broken(|b| b.order[3].id = u32::MAX);
-        assert_eq!(error, BvhError::Place { position: 3, id: u32::MAX });
+        assert_eq!(
+            error,
+            BvhError::Place {
+                position: 3,
+                id: u32::MAX
+            }
+        );
         let error = broken(|b| b.order.swap(3, 4));
-        assert!(matches!(error, BvhError::Place { position: 3, .. }), "{error}");
+        assert!(
+            matches!(error, BvhError::Place { position: 3, .. }),
+            "{error}"
+        );
         let error = broken(|b| b.order[3].turned = b.order[4].turned);
-        assert!(matches!(error, BvhError::Order { position: 4, .. }), "{error}");
+        assert!(
+            matches!(error, BvhError::Order { position: 4, .. }),
+            "{error}"
+        );
         let error = broken(|b| b.order[3].turned.triangle = 1000);
-        assert!(matches!(error, BvhError::Order { position: 3, .. }), "{error}");
+        assert!(
+            matches!(error, BvhError::Order { position: 3, .. }),
+            "{error}"
+        );
         let error = broken(|b| b.order[3].turned.first = 3);
-        assert!(matches!(error, BvhError::Order { position: 3, .. }), "{error}");
+        assert!(
+            matches!(error, BvhError::Order { position: 3, .. }),
+            "{error}"
+        );
         let error = broken(|b| b.order[3].turned.first = (b.order[3].turned.first + 1) % 3);
         assert!(matches!(error, BvhError::Vertices { .. }), "{error}");
         let error = broken(|b| b.order.truncate(5));
-        assert!(matches!(error, BvhError::OrderLength { order: 5, .. }), "{error}");
+        assert!(
+            matches!(error, BvhError::OrderLength { order: 5, .. }),
+            "{error}"
+        );
     }
 }
 
@@ -240,7 +295,10 @@ fn the_validator_finds_a_list_of_too_much_or_too_little() {
     assert!(matches!(error, BvhError::Place { .. }), "{error}");
     // A tree is no list.
     let error = broken(|b| b.depth = 0);
-    assert!(matches!(error, BvhError::Vertices { .. } | BvhError::Place { .. }), "{error}");
+    assert!(
+        matches!(error, BvhError::Vertices { .. } | BvhError::Place { .. }),
+        "{error}"
+    );
 }
 
 /// Moving any plane of a box by a step inwards must show where the box is tight: in a scene with many
@@ -259,7 +317,11 @@ fn the_validator_finds_broken_boxes() {
             let word = 4 + 2 * plane + child / 4;
             let step = 1 << (8 * (child % 4));
             let kept = bvh.elements[0].words[word];
-            let inwards = if plane % 2 == 0 { kept.wrapping_add(step) } else { kept.wrapping_sub(step) };
+            let inwards = if plane % 2 == 0 {
+                kept.wrapping_add(step)
+            } else {
+                kept.wrapping_sub(step)
+            };
             bvh.elements[0].words[word] = inwards;
             if let Err(error) = bvh.validate(&triangles) {
                 found += usize::from(matches!(error, BvhError::Box { node: 0, .. }));
@@ -271,7 +333,16 @@ fn the_validator_finds_broken_boxes() {
     }
     // Grids of no size.
     let error = broken(|b| b.elements[0].words[1] = 0);
-    assert!(matches!(error, BvhError::Box { .. } | BvhError::Children { .. } | BvhError::Unreachable { .. } | BvhError::InnerCount { .. }), "{error}");
+    assert!(
+        matches!(
+            error,
+            BvhError::Box { .. }
+                | BvhError::Children { .. }
+                | BvhError::Unreachable { .. }
+                | BvhError::InnerCount { .. }
+        ),
+        "{error}"
+    );
 }
 
 fn any_finite() -> impl Strategy<Value = f32> {

@@ -3,7 +3,7 @@
 mod accel_common;
 
 use accel_common::*;
-use etendue::accel::Bvh;
+use etendue::accel::{Bvh, Hit};
 use etendue::geometry::{Ray, triangle::intersect};
 use glam::Vec3;
 use proptest::prelude::*;
@@ -81,8 +81,9 @@ fn agrees_with_brute_force_on_nasty_meshes() {
     }
 }
 
-/// A list must find whatever there is to hit, and no hit that the exact test denies except beside an
-/// edge; it may take another hit than the closest only where the two are a rounding apart.
+/// A list must find whatever there is to hit but where the ray starts, and no hit that the exact test
+/// denies except beside an edge; it may take another hit than the closest only where the two are no
+/// farther apart than a triangle is long.
 #[test]
 fn a_list_finds_what_brute_force_finds() {
     for (name, mesh) in meshes() {
@@ -96,30 +97,43 @@ fn a_list_finds_what_brute_force_finds() {
                 let expected = brute_force(&bvh, &triangles, &ray);
                 let found = bvh.intersect(&ray);
                 assert_eq!(bvh.occluded(&ray), found.is_some(), "{name}: {ray:?}");
+                let triangle_of = |hit: Hit| {
+                    let placed = bvh.order[bvh.position(hit.triangle)];
+                    placed
+                        .turned
+                        .corners(triangles[placed.turned.triangle as usize])
+                };
                 let Some(found) = found else {
-                    assert_eq!(expected, None, "{name}: {ray:?}");
+                    let near = |hit: Hit| hit.t <= extent_along(&ray, &triangle_of(hit));
+                    assert!(expected.is_none_or(near), "{name}: {ray:?}: {expected:?}");
                     continue;
                 };
                 hits += 1;
-                let placed = bvh.order[bvh.position(found.triangle)];
-                let index = placed.turned.triangle as usize;
-                let own = intersect(&ray, &placed.turned.corners(triangles[index]));
+                let triangle = triangle_of(found);
+                let own = intersect(&ray, &triangle);
                 match own {
                     Some(own) => assert_eq!((own.t, own.b), (found.t, found.b), "{name}: {ray:?}"),
                     None => denied += 1,
                 }
-                if Some(found) != expected {
+                if let Some(closest) = expected
+                    && found != closest
+                {
                     others += 1;
-                    let far = extent_along(&ray, &triangles[index]);
-                    let closest = expected.map_or(found.t, |hit| hit.t);
+                    let far = extent_along(&ray, &triangle);
+                    // Hits where the ray starts may be lost or made.
+                    let at_start =
+                        found.t <= far || closest.t <= extent_along(&ray, &triangle_of(closest));
                     assert!(
-                        (found.t - closest).abs() <= far,
+                        at_start || (found.t - closest.t).abs() <= far,
                         "{name}: {ray:?}: {found:?} instead of {expected:?}, {far}"
                     );
                 }
             }
         }
-        println!("{name}: {hits} hits, {others} not the closest, {denied} beside an edge");
+        println!(
+            "{name}: {hits} hits, {others} not the closest, {denied} denied by the exact test"
+        );
+        assert!(denied * 50 <= hits && (others * 50 <= hits || name == "coincident"));
         assert!(hits * 20 > 2000, "{name}: the rays miss nearly everything");
     }
 }

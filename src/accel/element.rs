@@ -168,7 +168,10 @@ impl Element {
                 plane[child] = value;
             }
         }
-        for (word, bytes) in words[4..].iter_mut().zip(planes.as_flattened().chunks_exact(4)) {
+        for (word, bytes) in words[4..]
+            .iter_mut()
+            .zip(planes.as_flattened().chunks_exact(4))
+        {
             *word = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
         }
         Element { words }
@@ -249,14 +252,16 @@ impl Node {
             return true;
         }
         let other = within_reach(other);
-        let is_axis_fine = |axis: usize| {
-            let margin = MARGIN * f64::from(self.step[axis]);
-            let low_margin = if self.planes[2 * axis][child] == 0 { 0.0 } else { margin };
-            let low = self.plane(axis, 0, child) + low_margin;
-            let high = self.plane(axis, 1, child) - margin;
-            margin > 0.0 && low <= f64::from(other.min[axis]) && high >= f64::from(other.max[axis])
-        };
-        (0..3).all(is_axis_fine)
+        (0..3).all(|axis| {
+            let [origin, step] = [self.origin, self.step].map(|v| f64::from(v[axis]));
+            // As `Grid::quantised` has it.
+            let in_steps = |x: f32| (f64::from(x) - origin) / step;
+            let [low, high] = [0, 1].map(|high| self.planes[2 * axis + high][child]);
+            let low_margin = if low == 0 { 0.0 } else { MARGIN };
+            step > 0.0
+                && f64::from(low) <= in_steps(other.min[axis]) - low_margin
+                && f64::from(high) >= in_steps(other.max[axis]) + MARGIN
+        })
     }
 
     /// A plane of a child's box, metres; `high` is 0 or 1.
@@ -328,7 +333,10 @@ mod tests {
             for (i, bounds) in boxes.iter().enumerate() {
                 let decoded = node.child_box(i);
                 let looseness = (bounds.min - decoded.min).max(decoded.max - bounds.max);
-                assert!(looseness.cmple(2.0 * node.step + 1e-4).all(), "{n}, {i}: {looseness}");
+                assert!(
+                    looseness.cmple(2.0 * node.step + 1e-4).all(),
+                    "{n}, {i}: {looseness}"
+                );
             }
         }
     }
@@ -338,7 +346,9 @@ mod tests {
     fn random_boxes_are_held() {
         let mut state = 1_u64;
         let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
             (state >> 33) as u32
         };
         // Sign, exponent and fraction are all random; no infinities.
@@ -374,6 +384,9 @@ mod tests {
         let element = Element::pair([a, b, c, d], 77);
         assert_eq!(element.vertices(), [a, b, c, d]);
         assert_eq!(element.triangles(), [[a, b, c], [a, c, d]]);
-        assert_eq!((element.first_triangle(), &element.words[13..]), (77, &[0; 3][..]));
+        assert_eq!(
+            (element.first_triangle(), &element.words[13..]),
+            (77, &[0; 3][..])
+        );
     }
 }

@@ -125,7 +125,11 @@ impl Search<'_> {
             let growth = growth(&triangle, &self.triangles[other]);
             if growth <= best.map_or(MAX_GROWTH, |b| b.0) {
                 let edge = edge as u8;
-                let partner = Partner { other, edge, other_edge };
+                let partner = Partner {
+                    other,
+                    edge,
+                    other_edge,
+                };
                 best = Some((growth, partner));
             }
         }
@@ -167,7 +171,11 @@ fn growth(a: &[Vec3; 3], b: &[Vec3; 3]) -> f64 {
     let (a, b) = (Aabb::from_points(a), Aabb::from_points(b));
     let separate = a.half_area() + b.half_area();
     let together = a.union(b).half_area();
-    if together > 0.0 { together / separate } else { 0.0 }
+    if together > 0.0 {
+        together / separate
+    } else {
+        0.0
+    }
 }
 
 /// The bits of both ends; -0 counts as 0.
@@ -208,7 +216,10 @@ mod tests {
         let mut seen = vec![false; triangles.len()];
         for pair in &pairs {
             let [a, b, c, d] = pair.vertices(triangles);
-            let turned = [Some((pair.first, [a, b, c])), pair.second.map(|t| (t, [a, c, d]))];
+            let turned = [
+                Some((pair.first, [a, b, c])),
+                pair.second.map(|t| (t, [a, c, d])),
+            ];
             for (t, expected) in turned.into_iter().flatten() {
                 let index = t.triangle as usize;
                 assert!(!seen[index], "triangle {index} is in two pairs");
@@ -280,7 +291,11 @@ mod tests {
         assert_eq!(check(&[triangle; 5]), 0);
         check(&[[Vec3::ONE; 3]; 5]);
         check(&[[Vec3::ZERO, Vec3::X, Vec3::X]; 4]);
-        check(&[triangle, [Vec3::X, Vec3::ZERO, Vec3::X], [Vec3::ZERO, Vec3::X, Vec3::ZERO]]);
+        check(&[
+            triangle,
+            [Vec3::X, Vec3::ZERO, Vec3::X],
+            [Vec3::ZERO, Vec3::X, Vec3::ZERO],
+        ]);
         let [a, b, c] = triangle;
         check(&[triangle, [a, c, b], triangle, [b, a, c], triangle]);
     }
@@ -288,9 +303,16 @@ mod tests {
     /// Long diagonal neighbours would make boxes that rays rarely miss.
     #[test]
     fn a_pair_s_box_is_no_larger_than_both_boxes() {
-        let flat = [Vec3::ZERO, Vec3::new(100.0, 0.1, 0.0), Vec3::new(0.0, 0.1, 0.0)];
+        let flat = [
+            Vec3::ZERO,
+            Vec3::new(100.0, 0.1, 0.0),
+            Vec3::new(0.0, 0.1, 0.0),
+        ];
         let steep = [flat[1], flat[0], Vec3::new(0.0, 0.0, 100.0)];
-        assert_eq!(check(&[flat, steep]), usize::from(growth(&flat, &steep) <= MAX_GROWTH));
+        assert_eq!(
+            check(&[flat, steep]),
+            usize::from(growth(&flat, &steep) <= MAX_GROWTH)
+        );
         for pair in pairs(&grid(20)) {
             let second = pair.second.expect("a pair of two");
             let at = |t: Turned| grid(20)[t.triangle as usize];

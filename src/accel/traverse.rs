@@ -80,7 +80,13 @@ impl BoxSetup {
     fn new(ray: &Ray) -> BoxSetup {
         let d = ray.direction;
         let least = d.abs().max_element() * SMALLEST_SHARE;
-        let inverse = |d: f32| 1.0 / if d.abs() < least { least.copysign(d) } else { d };
+        let inverse = |d: f32| {
+            1.0 / if d.abs() < least {
+                least.copysign(d)
+            } else {
+                d
+            }
+        };
         BoxSetup {
             origin: ray.origin,
             inverse: Vec3::new(inverse(d.x), inverse(d.y), inverse(d.z)),
@@ -200,14 +206,19 @@ fn visit(element: &Element, setup: &BoxSetup, t_max: f32) -> Group {
         let near = |axis: usize| t(2 * axis + usize::from(setup.inverse[axis] < 0.0));
         let far = |axis: usize| t(2 * axis + usize::from(setup.inverse[axis] >= 0.0));
         let entry = bits(near(0)).max(bits(near(1))).max(bits(near(2)).max(0));
-        let exit = bits(far(0)).min(bits(far(1))).min(bits(far(2)).min(bits(t_max)));
+        let exit = bits(far(0))
+            .min(bits(far(1)))
+            .min(bits(far(2)).min(bits(t_max)));
         let exit = bits(f32::from_bits(exit as u32) * FAR_SLACK);
         let is_hit = entry <= exit && (slot as u32) < node.children;
         let nearness = if is_hit { entry as u32 } else { u32::MAX } & !15;
         *key = nearness | if is_hit { slot as u32 + 1 } else { 0 };
     }
     keys.sort_unstable();
-    let slots = keys.iter().rev().fold(0, |slots, key| slots << 4 | key & 15);
+    let slots = keys
+        .iter()
+        .rev()
+        .fold(0, |slots, key| slots << 4 | key & 15);
     Group {
         header: element.words[3],
         slots,

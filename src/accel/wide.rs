@@ -133,5 +133,10 @@ fn order(plan: &Plan, pairs: &[Pair]) -> Vec<Placed> {
         }
         _ => [None; 2],
     };
-    plan.kinds.iter().enumerate().flat_map(placed).flatten().collect()
+    plan.kinds
+        .iter()
+        .enumerate()
+        .flat_map(placed)
+        .flatten()
+        .collect()
 }

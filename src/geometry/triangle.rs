@@ -161,11 +161,7 @@ pub fn fan_candidates(setup: &RaySetup, vertices: [Vec3; 4]) -> FanCandidates {
     let vertices = vertices.map(|v| exact_shear(setup, v));
     let [a, b, c, d] = vertices;
     let diagonal = exact_edge(xy(a), xy(c));
-    let first = Vec3::new(
-        exact_edge(xy(c), xy(b)),
-        diagonal,
-        exact_edge(xy(b), xy(a)),
-    );
+    let first = Vec3::new(exact_edge(xy(c), xy(b)), diagonal, exact_edge(xy(b), xy(a)));
     let second = Vec3::new(
         exact_edge(xy(d), xy(c)),
         exact_edge(xy(a), xy(d)),

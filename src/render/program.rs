@@ -59,7 +59,12 @@ pub fn virtual_files(
 
 /// The `accel.wgsl` of an acceleration structure, and of a list its `list.wgsl`.
 pub fn accel_files(bvh: &Bvh) -> VirtualFiles {
-    let include = |name: &str| ("accel.wgsl".into(), format!("#include \"accel/{name}.wgsl\"\n"));
+    let include = |name: &str| {
+        (
+            "accel.wgsl".into(),
+            format!("#include \"accel/{name}.wgsl\"\n"),
+        )
+    };
     if bvh.is_list() {
         let pairs = ("list.wgsl".into(), list_wgsl(&bvh.elements));
         VirtualFiles::from([include("list"), pairs])
@@ -116,7 +121,10 @@ pub fn constants(
     let offset = |o: Option<u32>| Constant::U32(o.unwrap_or(0));
     let mut list = feature_constants(&scene.features);
     list.extend([
-        ("HAS_LIGHT_TRIANGLES", Constant::Bool(scene.has_light_triangles)),
+        (
+            "HAS_LIGHT_TRIANGLES",
+            Constant::Bool(scene.has_light_triangles),
+        ),
         (
             "HAS_PUNCTUAL_LIGHTS",
             Constant::Bool(scene.lights.iter().any(super::lights::is_punctual)),

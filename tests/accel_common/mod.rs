@@ -171,7 +171,9 @@ pub fn brute_force(bvh: &Bvh, triangles: &[[Vec3; 3]], ray: &Ray) -> Option<Hit>
     let setup = RaySetup::new(ray.origin, ray.direction);
     let mut best: Option<Hit> = None;
     for placed in &bvh.order {
-        let [v0, v1, v2] = placed.turned.corners(triangles[placed.turned.triangle as usize]);
+        let [v0, v1, v2] = placed
+            .turned
+            .corners(triangles[placed.turned.triangle as usize]);
         let Some(hit) = intersect_triangle(&setup, v0, v1, v2) else {
             continue;
         };
