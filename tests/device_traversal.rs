@@ -5,13 +5,12 @@ mod accel_common;
 mod device_common;
 
 use accel_common::{
-    Random, boxes, build, cube, grid, nasty_ray, needles, scaled, soup, sphere, terrain,
+    LIST, Random, TREE, boxes, build, cube, grid, nasty_ray, needles, scaled, soup, sphere, terrain,
 };
-use device_common::{Kernel, NODES, Setup, TRIANGLES, rounds_as_the_host, upload};
+use device_common::{ELEMENTS, Kernel, Setup, rounds_as_the_host, upload};
 use etendue::accel::{Bvh, Hit};
 use etendue::geometry::Ray;
 use etendue::gpu::Buffer;
-use etendue::render::layout;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -24,36 +23,44 @@ const RAYS: usize = 16_384;
 /// 1e-5, and one ray in 100,000 may meet another triangle (at edges and ties).
 const ULPS: i64 = 64;
 
-/// A tree on the device and on the host.
+/// A structure on the device and on the host.
 struct Target {
     bvh: Bvh,
-    ordered: Mesh,
-    buffers: [(u32, Buffer); 2],
+    mesh: Mesh,
+    elements: Buffer,
 }
 
 impl Target {
-    fn new(mesh: &[[Vec3; 3]]) -> Self {
-        let (bvh, ordered) = build(mesh, 4, 16);
-        let on_device = |[v0, v1, v2]: &[Vec3; 3]| layout::Triangle {
-            v0: v0.to_array(),
-            v1: v1.to_array(),
-            v2: v2.to_array(),
-            light: layout::NONE,
-            ..Default::default()
-        };
-        let triangles: Vec<_> = ordered.iter().map(on_device).collect();
+    fn new(mesh: &[[Vec3; 3]], list_limit: usize) -> Self {
+        let bvh = build(mesh, list_limit);
         Self {
-            buffers: [
-                (NODES, upload("nodes", &bvh.nodes)),
-                (TRIANGLES, upload("triangles", &triangles)),
-            ],
+            elements: upload("elements", &bvh.elements),
             bvh,
-            ordered,
+            mesh: mesh.to_vec(),
+        }
+    }
+
+    /// A kernel for this list, or for any tree.
+    fn kernel(&self, setup: &Setup, entry: &str) -> Kernel {
+        let setup = setup.clone();
+        if self.bvh.is_list() {
+            setup.structure(&self.bvh).kernel("traversal", entry)
+        } else {
+            setup.kernel("traversal", entry)
         }
     }
 
     /// The device's hits, and whether it found the rays occluded.
     fn trace(&self, kernel: &Kernel, rays: &[Ray]) -> Vec<(Option<Hit>, bool)> {
+        self.trace_with(kernel, rays, [0; 3])
+    }
+
+    fn trace_with(
+        &self,
+        kernel: &Kernel,
+        rays: &[Ray],
+        params: [u32; 3],
+    ) -> Vec<(Option<Hit>, bool)> {
         let inputs: Vec<[[f32; 4]; 2]> = rays
             .iter()
             .map(|r| {
@@ -61,9 +68,9 @@ impl Target {
                 [o.to_array(), d.to_array()]
             })
             .collect();
-        let buffers: Vec<_> = self.buffers.iter().map(|(i, b)| (*i, b)).collect();
+        let buffers = [(ELEMENTS, &self.elements)];
         let n = rays.len();
-        let results: Vec<[[u32; 4]; 2]> = kernel.run(n as u32, [0; 3], &inputs, n, &buffers);
+        let results: Vec<[[u32; 4]; 2]> = kernel.run(n as u32, params, &inputs, n, &buffers);
         let hit = |[a, b]: &[[u32; 4]; 2]| Hit {
             t: f32::from_bits(a[0]),
             triangle: a[1],
@@ -75,10 +82,6 @@ impl Target {
             .map(|r| ((r[0][1] != u32::MAX).then(|| hit(r)), r[0][3] == 1))
             .collect()
     }
-}
-
-fn kernel() -> Kernel {
-    Setup::new().kernel("traversal", "main")
 }
 
 fn meshes() -> Vec<(&'static str, Mesh)> {
@@ -118,13 +121,13 @@ const PLACES: [(f32, Vec3); 5] = [
 ];
 
 /// Rays that are hard to decide, some of them ending just at, before or behind their hit.
-fn rays(target: &Target, seed: u64) -> Vec<Ray> {
+fn rays(target: &Target, count: usize, seed: u64) -> Vec<Ray> {
     let mut random = Random(seed);
-    (0..RAYS)
+    (0..count)
         .map(|i| {
-            let mut ray = nasty_ray(&target.ordered, &mut random);
+            let mut ray = nasty_ray(&target.mesh, &mut random);
             if i % 4 == 3
-                && let Some(hit) = target.bvh.intersect(&target.ordered, &ray)
+                && let Some(hit) = target.bvh.intersect(&ray)
             {
                 ray.t_max = [hit.t, hit.t.next_down(), hit.t.next_up()][i / 4 % 3];
             }
@@ -157,57 +160,143 @@ struct Comparison {
     first: Option<String>,
 }
 
-fn compare(kernel: &Kernel, meshes: Vec<(&str, Mesh)>, exact: bool) -> Comparison {
+impl Comparison {
+    /// Compares what the device found with what the host finds.
+    fn add(&mut self, name: &str, target: &Target, rays: &[Ray], found: &[(Option<Hit>, bool)]) {
+        let exact = rounds_as_the_host();
+        let expected: Vec<_> = rays.par_iter().map(|r| target.bvh.intersect(r)).collect();
+        for ((ray, (hit, occluded)), expected) in rays.iter().zip(found).zip(expected) {
+            self.hits += usize::from(expected.is_some());
+            if !agree(hit, &expected, exact) || *occluded != expected.is_some() {
+                self.unlike += 1;
+                self.first
+                    .get_or_insert_with(|| format!("{name}, {ray:?}: {hit:?}, host {expected:?}"));
+            }
+        }
+        self.rays += rays.len();
+    }
+
+    fn assert_alike(&self) {
+        let exact = rounds_as_the_host();
+        println!("bit for bit: {exact}, {self:?}");
+        let allowed = if exact { 0 } else { self.rays / 100_000 };
+        assert!(
+            self.hits * 3 > self.rays && self.unlike <= allowed,
+            "{self:?}"
+        );
+    }
+}
+
+fn compare(
+    setup: &Setup,
+    meshes: Vec<(&str, Mesh)>,
+    list_limit: usize,
+    count: usize,
+) -> Comparison {
     let mut sum = Comparison::default();
+    // One for all trees; the text of a list is its own.
+    let mut kernel: Option<Kernel> = None;
     for (m, (name, mesh)) in meshes.into_iter().enumerate() {
         for (p, (scale, offset)) in PLACES.into_iter().enumerate() {
-            let target = Target::new(&scaled(&mesh, scale, offset));
-            let rays = rays(&target, (10 * m + p) as u64);
-            let found = target.trace(kernel, &rays);
-            let expected: Vec<_> = rays
-                .par_iter()
-                .map(|r| target.bvh.intersect(&target.ordered, r))
-                .collect();
-            for ((ray, (hit, occluded)), expected) in rays.iter().zip(found).zip(expected) {
-                sum.hits += usize::from(expected.is_some());
-                if !agree(&hit, &expected, exact) || occluded != expected.is_some() {
-                    sum.unlike += 1;
-                    sum.first.get_or_insert_with(|| {
-                        format!("{name}, scale {scale}, {ray:?}: {hit:?}, host {expected:?}")
-                    });
-                }
+            let target = Target::new(&scaled(&mesh, scale, offset), list_limit);
+            if target.bvh.is_list() {
+                kernel = None;
             }
-            sum.rays += rays.len();
+            let kernel = kernel.get_or_insert_with(|| target.kernel(setup, "main"));
+            let rays = rays(&target, count, (10 * m + p) as u64);
+            let found = target.trace(kernel, &rays);
+            sum.add(&format!("{name}, scale {scale}"), &target, &rays, &found);
         }
     }
     sum
 }
 
-#[test]
-fn device_and_host_find_the_same_hits() {
-    let exact = rounds_as_the_host();
-    let sum = compare(&kernel(), meshes(), exact);
-    println!("bit for bit: {exact}, {sum:?}");
-    assert!(sum.rays >= 1_000_000 && sum.hits * 3 > sum.rays);
-    let allowed = if exact { 0 } else { sum.rays / 100_000 };
-    assert!(sum.unlike <= allowed, "{sum:?}");
+/// Few enough triangles for a list.
+fn small_meshes() -> Vec<(&'static str, Mesh)> {
+    vec![
+        ("soup", soup(24, 0.3, 1)),
+        ("needles", needles(24, 4)),
+        ("terrain", terrain(4, 5)),
+        ("cube", cube(2)),
+        ("boxes", boxes(3)),
+        ("coincident", [cube(1), cube(1)].concat()),
+        ("one", vec![[Vec3::ZERO, Vec3::X, Vec3::Y]]),
+    ]
 }
 
-/// Negative control: ties that go to the larger position.
+#[test]
+fn device_and_host_find_the_same_hits_in_a_tree() {
+    let sum = compare(&Setup::new(), meshes(), TREE, RAYS);
+    assert!(sum.rays >= 1_000_000);
+    sum.assert_alike();
+}
+
+#[test]
+fn device_and_host_find_the_same_hits_in_a_list() {
+    compare(&Setup::new(), small_meshes(), LIST, RAYS).assert_alike();
+}
+
+/// The two rays of a query, traced one after the other and in rounds of a few elements, get the
+/// answers that each gets alone.
+#[test]
+fn rays_that_are_traced_together_are_answered_as_alone() {
+    for limit in [TREE, LIST] {
+        for mesh in [
+            terrain(4, 5),
+            [sphere(4), cube(1)].concat(),
+            soup(40, 0.5, 9),
+        ] {
+            let target = Target::new(&mesh, limit);
+            let alone = target.kernel(&Setup::new(), "main");
+            let together = target.kernel(&Setup::new(), "together");
+            let rays = rays(&target, RAYS, 1);
+            let expected = target.trace(&alone, &rays);
+            let hits = expected.iter().filter(|(hit, _)| hit.is_some()).count();
+            assert!(hits * 3 > RAYS && hits < RAYS, "{hits}");
+            for (shift, round) in [(0, u32::MAX), (1, 1), (7, 2), (100, 16)] {
+                let found = target.trace_with(&together, &rays, [shift, round, 0]);
+                for i in 0..RAYS {
+                    assert_eq!(
+                        found[i].0, expected[i].0,
+                        "{limit} {shift} {round} {:?}",
+                        rays[i]
+                    );
+                    let other = (i + RAYS - shift as usize) % RAYS;
+                    assert_eq!(found[i].1, expected[other].1, "{limit} {shift} {round} {i}");
+                }
+            }
+        }
+    }
+}
+
+/// Negative control: ties that go to the larger number.
 #[test]
 fn a_wrong_tie_is_noticed() {
-    let (from, to) = ("i < best.triangle", "i > best.triangle");
+    let (from, to) = ("id < best.triangle", "id > best.triangle");
     let setup = Setup::new().patched("accel/bvh.wgsl", from, to);
-    let kernel = setup.kernel("traversal", "main");
     let same = vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 500];
-    let sum = compare(&kernel, vec![("all the same", same)], rounds_as_the_host());
+    let sum = compare(&setup, vec![("all the same", same)], TREE, RAYS);
     assert!(sum.unlike * 10 > sum.hits, "{sum:?}");
+    let (from, to) = ("hit.t < so_far.t", "hit.t <= so_far.t");
+    let setup = Setup::new().patched("accel/list.wgsl", from, to);
+    let same = vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 5];
+    let sum = compare(&setup, vec![("all the same", same)], LIST, RAYS);
+    assert!(sum.unlike * 10 > sum.hits, "{sum:?}");
+}
+
+/// Negative control: children that are visited although they are not there, or left out.
+#[test]
+fn a_child_too_few_is_noticed() {
+    let (from, to) = ("slots <= vec4u(count)", "slots < vec4u(count)");
+    let setup = Setup::new().patched("accel/bvh.wgsl", from, to);
+    let sum = compare(&setup, vec![("cube", cube(8))], TREE, RAYS);
+    assert!(sum.unlike * 100 > sum.hits, "{sum:?}");
 }
 
 /// Rays from inside at every vertex, edge and middle, and along the axes.
 fn escaping_rays(target: &Target, origin: Vec3, random: &mut Random) -> Vec<Ray> {
     let mut rays = Vec::new();
-    for &[a, b, c] in &target.ordered {
+    for &[a, b, c] in &target.mesh {
         for point in [a, a * 0.5 + b * 0.5, b * 0.5 + c * 0.5, (a + b + c) / 3.0] {
             rays.push(Ray::new(origin, point - origin));
             rays.push(Ray::new(origin, (point - origin).normalize()));
@@ -220,12 +309,19 @@ fn escaping_rays(target: &Target, origin: Vec3, random: &mut Random) -> Vec<Ray>
     rays
 }
 
-fn escapes(kernel: &Kernel, mesh: &[[Vec3; 3]], radius: f32, center: Vec3) -> (usize, usize) {
+fn escapes(
+    setup: &Setup,
+    mesh: &[[Vec3; 3]],
+    limit: usize,
+    radius: f32,
+    center: Vec3,
+) -> (usize, usize) {
     let (mut random, mut missed, mut all) = (Random(1), 0, 0);
-    let target = Target::new(mesh);
+    let target = Target::new(mesh, limit);
+    let kernel = target.kernel(setup, "main");
     for offset in [Vec3::ZERO, Vec3::new(0.25, 0.0, -0.5), random.point() * 0.5] {
         let rays = escaping_rays(&target, center + offset * radius, &mut random);
-        let found = target.trace(kernel, &rays);
+        let found = target.trace(&kernel, &rays);
         missed += found.iter().filter(|(h, o)| h.is_none() || !o).count();
         all += rays.len();
     }
@@ -234,31 +330,41 @@ fn escapes(kernel: &Kernel, mesh: &[[Vec3; 3]], radius: f32, center: Vec3) -> (u
 
 #[test]
 fn nothing_leaves_a_closed_mesh_on_the_device() {
-    let kernel = kernel();
     let (mut missed, mut all) = (0, 0);
-    let mut count = |(m, a)| {
+    let mut count = |mesh: &[[Vec3; 3]], limit, radius, center| {
+        let (m, a) = escapes(&Setup::new(), mesh, limit, radius, center);
         missed += m;
         all += a;
     };
-    for scale in [1e-6, 1.0, 1e6] {
-        for (mesh, radius) in [(sphere(24), 0.9), (cube(8), 1.0), (cube(7), 1.0)] {
-            let mesh = scaled(&mesh, scale, Vec3::ZERO);
-            count(escapes(&kernel, &mesh, radius * scale, Vec3::ZERO));
-        }
-    }
     let center = Vec3::new(1e6, -3e5, 2e6);
-    let far = scaled(&sphere(24), 100.0, center);
-    count(escapes(&kernel, &far, 50.0, center));
+    for (limit, fine, faces) in [(TREE, 24, [7, 8]), (LIST, 4, [2, 3])] {
+        for scale in [1e-6, 1.0, 1e6] {
+            let round = scaled(&sphere(fine), scale, Vec3::ZERO);
+            count(&round, limit, 0.5 * scale, Vec3::ZERO);
+            for n in faces {
+                count(
+                    &scaled(&cube(n), scale, Vec3::ZERO),
+                    limit,
+                    scale,
+                    Vec3::ZERO,
+                );
+            }
+        }
+        count(&scaled(&sphere(fine), 100.0, center), limit, 50.0, center);
+    }
     println!("{all} rays from inside closed meshes");
     assert_eq!(missed, 0, "of {all}");
 }
 
-/// Negative control: edges that are not decided exactly lose hits.
+/// Negative control: edges that are not decided exactly lose hits in a tree, and ones that count as
+/// outside where they are 0 in a list.
 #[test]
 fn a_leaky_traversal_is_noticed() {
     let from = "return (difference + sum) + lost;";
     let to = "return select(difference, -1.0, difference == 0.0);";
-    let kernel = Setup::new().patched("geometry/triangle.wgsl", from, to);
-    let kernel = kernel.kernel("traversal", "main");
-    assert!(escapes(&kernel, &cube(8), 1.0, Vec3::ZERO).0 > 0);
+    let setup = Setup::new().patched("geometry/triangle.wgsl", from, to);
+    assert!(escapes(&setup, &cube(8), TREE, 1.0, Vec3::ZERO).0 > 0);
+    let (from, to) = ("(e.x < 0.0 || e.y < 0.0", "(e.x <= 0.0 || e.y < 0.0");
+    let setup = Setup::new().patched("geometry/triangle.wgsl", from, to);
+    assert!(escapes(&setup, &cube(2), LIST, 1.0, Vec3::ZERO).0 > 0);
 }

@@ -27,16 +27,17 @@ fn all_integrators_and_samplers_compile() {
 fn each_feature_alone_and_each_missing_compiles() {
     let library = ShaderLibrary::embedded();
     let settings = Settings::default();
-    for on in [false, true] {
-        let base = shader_check::constants(on);
-        for i in 0..base.len() {
-            let mut constants = base.clone();
-            if let Constant::Bool(value) = &mut constants[i].1 {
+    for base in shader_check::variants() {
+        for i in 0..base.constants.len() {
+            let mut variant = base.clone();
+            let (name, constant) = &mut variant.constants[i];
+            if let Constant::Bool(value) = constant {
                 *value = !*value;
-                let files = shader_check::virtual_files(&library, &settings, &constants, 1)
+                let change = format!("{}, but {name} = {value}", base.name);
+                let files = shader_check::virtual_files(&library, &settings, &variant)
                     .expect("known names");
                 let built = program::build(&library, &files, &settings);
-                built.unwrap_or_else(|e| panic!("{} = {}:\n{e}", base[i].0, !on));
+                built.unwrap_or_else(|e| panic!("{change}:\n{e}"));
             }
         }
     }

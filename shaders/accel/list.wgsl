@@ -2,7 +2,7 @@
 // lanes read the same pair at the same time, which costs a fraction of reading one each.
 // Twin of src/accel/list.rs, operation for operation.
 //
-// Needs const PAIR_COUNT.
+// The generated list.wgsl has fn closest_of_all(setup, ray, camera_ray, seed) -> ListHit.
 
 #include "accel/trace.wgsl"
 #include "list.wgsl"
@@ -37,7 +37,9 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
     }
     if (select((*t).query.has_ray, (*t).query.has_shadow, is_shadow)) {
       let setup = ray_setup(ray.origin, ray.direction);
-      let best = closest_of_all(setup, ray);
+      let camera_ray = (*t).query.camera_ray && !is_shadow;
+      let seed = select((*t).query.seed, (*t).query.shadow_seed, is_shadow);
+      let best = closest_of_all(setup, ray, camera_ray, seed);
       if (is_shadow) {
         (*t).answer.occluded = best.triangle != MISS;
       } else if (best.triangle != MISS) {
@@ -48,28 +50,50 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
   return true;
 }
 
+// The hit on a triangle. Beside an edge the quick test may have left open what the exact one denies:
+// there the quick values are the hit, lest none of the triangles at the edge be met.
 fn refine(triangle: u32, setup: RaySetup) -> Hit {
   let v = pair_vertices(load_element(triangle >> 1u));
   let fan = fan_candidates(setup, v.v0, v.v1, v.v2, v.v3);
-  let hit = refined_hit(fan_triangle(fan, (triangle & 1u) != 0u));
+  let second = (triangle & 1u) != 0u;
+  let s = fan_triangle(fan, second);
+  var hit = refined_hit(s);
+  if (hit.t <= 0.0) {
+    hit = quick_hit(select(fan.first_edges, fan.second_edges, second), s);
+  }
   return Hit(hit.t, triangle, hit.b, hit.back_face);
 }
 
+// The hit by the quick edges; where t is not positive there is none.
+fn quick_hit(edges: vec3f, s: Sheared) -> TriangleHit {
+  let determinant = (edges.x + edges.y) + edges.z;
+  return TriangleHit(exact_depth(edges, s.a, s.b, s.c) / determinant, edges / determinant, determinant < 0.0);
+}
+
 // The closer of a hit and those on the triangles (a, b, c), which is number `id`, and (a, c, d).
-fn closer_of_pair(so_far: ListHit, id: u32, ray: Ray, a: vec3f, b: vec3f, c: vec3f, d: vec3f) -> ListHit {
+fn closer_of_pair(
+  so_far: ListHit, id: u32, ray: Ray, camera_ray: bool, seed: u32, a: vec3f, b: vec3f, c: vec3f, d: vec3f,
+) -> ListHit {
   let fan = sheared_fan(a, b, c, d);
   var hit = so_far;
-  let first_t = quick_depth(fan.first_edges, a, b, c);
-  if (fan.first && first_t > 0.0 && first_t < hit.t && id != ray.start && id != ray.end) {
-    hit = ListHit(first_t, id);
+  if (fan.first) {
+    hit = closer(hit, id, quick_hit(fan.first_edges, Sheared(a, b, c)), ray, camera_ray, seed);
   }
-  let second_t = quick_depth(fan.second_edges, a, c, d);
-  if (fan.second && second_t > 0.0 && second_t < hit.t && id + 1u != ray.start && id + 1u != ray.end) {
-    hit = ListHit(second_t, id + 1u);
+  if (fan.second) {
+    hit = closer(hit, id + 1u, quick_hit(fan.second_edges, Sheared(a, c, d)), ray, camera_ray, seed);
   }
   return hit;
 }
 
-fn quick_depth(edges: vec3f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
-  return exact_depth(edges, a, b, c) / ((edges.x + edges.y) + edges.z);
+fn closer(so_far: ListHit, id: u32, hit: TriangleHit, ray: Ray, camera_ray: bool, seed: u32) -> ListHit {
+  let is_closer = hit.t > 0.0 && hit.t < so_far.t;
+  if (!is_closer || id == ray.start || id == ray.end) {
+    return so_far;
+  }
+  if (HAS_ALPHA || HAS_SINGLE_SIDED) {
+    if (!accept_hit(load_triangle(id), hit.b, hit.back_face, camera_ray, seed)) {
+      return so_far;
+    }
+  }
+  return ListHit(hit.t, id);
 }

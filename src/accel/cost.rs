@@ -5,8 +5,11 @@ use crate::geometry::Aabb;
 
 impl Bvh {
     /// The surface area heuristic: elements that a random long line through the root's box is
-    /// expected to load, nodes and pairs alike. 0 for a root without area.
+    /// expected to load, nodes and pairs alike. 0 for a root without area. For a list, all of them.
     pub fn sah_cost(&self) -> f64 {
+        if self.is_list() {
+            return self.elements.len() as f64;
+        }
         let mut area = 0.0;
         let mut root = Aabb::EMPTY;
         let mut waiting = vec![0];

@@ -30,7 +30,7 @@ pub const MAX_ELEMENTS: usize = 1 << 28;
 ///
 /// The grid's origin is x, y, z (two's complement) times 2^(origin exponent - 127); its step on an
 /// axis is 2^(origin exponent + grid exponent - 8 - finer - 127). Decoded boxes hold the padded ones
-/// with [`MARGIN`] steps to spare.
+/// with [`MARGIN`] steps to spare, but for planes at 0 steps.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 pub struct Element {
@@ -41,6 +41,20 @@ pub struct Element {
 /// Steps of the grid by which a decoded box is larger than the one it stands for on each side, at
 /// least: covers the rounding of a traversal that works in steps (`accel::traverse`).
 pub const MARGIN: f64 = 1.0 / 1024.0;
+
+/// Boxes end so many metres from the coordinates' origin on each axis, 2^64: what a ray meets farther
+/// away is lost. Triangles of such a size are missed in any case (`geometry::triangle`), and steps must
+/// not overflow times the largest reciprocal of a unit vector's component, 2^60.
+const REACH: f32 = 18_446_744_073_709_551_616.0;
+
+/// The part of a box within [`REACH`]; of one beyond, its nearest face.
+fn within_reach(bounds: &Aabb) -> Aabb {
+    let clamped = |v: Vec3| v.clamp(Vec3::splat(-REACH), Vec3::splat(REACH));
+    Aabb {
+        min: clamped(bounds.min),
+        max: clamped(bounds.max),
+    }
+}
 
 /// Added to exponents so that they are not negative.
 const BIAS: i32 = 127;
@@ -138,6 +152,7 @@ fn step_exponent(size: f64) -> i32 {
 impl Element {
     /// A node over padded boxes of its children, 1 to 8 of them, the first `inner` being nodes.
     pub(super) fn node(boxes: &[Aabb], inner: u32, first: u32) -> Element {
+        let boxes: Vec<Aabb> = boxes.iter().map(within_reach).collect();
         let bounds = boxes.iter().fold(Aabb::EMPTY, |a, &b| a.union(b));
         let grid = Grid::around(&bounds);
         let finer = grid.steps.map(|s| (grid.longest - s) as u32);
@@ -220,20 +235,158 @@ impl Element {
 impl Node {
     /// The box of a child.
     pub fn child_box(&self, child: usize) -> Aabb {
-        let at = |plane: usize, axis: usize| {
-            let steps = f64::from(self.planes[plane][child]);
-            f64::from(self.origin[axis]) + steps * f64::from(self.step[axis])
-        };
         let corner = |high: usize| {
-            Vec3::new(
-                at(high, 0) as f32,
-                at(high + 2, 1) as f32,
-                at(high + 4, 2) as f32,
-            )
+            let at = |axis: usize| self.plane(axis, high, child) as f32;
+            Vec3::new(at(0), at(1), at(2))
         };
         Aabb {
             min: corner(0),
             max: corner(1),
         }
+    }
+
+    /// Whether the box of a child holds what of another is within [`REACH`], with [`MARGIN`] to spare
+    /// on each side, but for planes through the grid's origin, of which a traversal is sure enough.
+    pub fn holds(&self, child: usize, other: &Aabb) -> bool {
+        if other.is_empty() {
+            return true;
+        }
+        let other = within_reach(other);
+        (0..3).all(|axis| {
+            let [origin, step] = [self.origin, self.step].map(|v| f64::from(v[axis]));
+            // As `Grid::quantised` has it.
+            let in_steps = |x: f32| (f64::from(x) - origin) / step;
+            let [low, high] = [0, 1].map(|high| self.planes[2 * axis + high][child]);
+            let low_margin = if low == 0 { 0.0 } else { MARGIN };
+            step > 0.0
+                && f64::from(low) <= in_steps(other.min[axis]) - low_margin
+                && f64::from(high) >= in_steps(other.max[axis]) + MARGIN
+        })
+    }
+
+    /// A plane of a child's box, metres; `high` is 0 or 1.
+    fn plane(&self, axis: usize, high: usize, child: usize) -> f64 {
+        let steps = f64::from(self.planes[2 * axis + high][child]);
+        f64::from(self.origin[axis]) + steps * f64::from(self.step[axis])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn span(min: [f32; 3], max: [f32; 3]) -> Aabb {
+        Aabb {
+            min: Vec3::from(min),
+            max: Vec3::from(max),
+        }
+    }
+
+    /// Encodes and decodes; checks the counts and that every box is held, with its margin.
+    fn round_trip(boxes: &[Aabb]) -> Node {
+        let padded: Vec<Aabb> = boxes.iter().map(Aabb::padded).collect();
+        let inner = boxes.len() as u32 / 2;
+        let node = Element::node(&padded, inner, 12_345).decode();
+        assert_eq!(node.children as usize, boxes.len());
+        assert_eq!((node.inner, node.first), (inner, 12_345));
+        for (i, bounds) in padded.iter().enumerate() {
+            assert!(node.holds(i, bounds), "{boxes:?}: {i}: {node:?}");
+        }
+        node
+    }
+
+    #[test]
+    fn extreme_boxes_are_held() {
+        let unit = span([-1.0; 3], [1.0; 3]);
+        let times = |s: f32| span([-s, -s, 0.5 * s], [s, 0.25 * s, s]);
+        let at = |x: f32, size: f32| span([x, -x, 0.0], [x + size, -x + size, size]);
+        for bounds in [
+            unit,
+            times(1e-30),
+            times(1e-42),
+            times(1e18),
+            times(1e30),
+            times(f32::MAX),
+            at(1e6, 1e-3),
+            at(-1e9, 1.0),
+            at(1e18, 0.0),
+            span([0.0; 3], [0.0; 3]),
+            span([5.0, -1.0, 1.0], [5.0, 1.0, 1.0]),
+            span([0.0, 0.0, 0.0], [1e18, 1e-18, 1.0]),
+            span([-2.0, 0.0, 1e-30], [30.0, 1e30, 2e-30]),
+        ] {
+            round_trip(&[bounds]);
+            round_trip(&[bounds, unit]);
+            round_trip(&[bounds, times(1e-30), at(1e6, 1e-3)]);
+        }
+    }
+
+    #[test]
+    fn up_to_eight_children_are_held_closely() {
+        let child = |i: usize| {
+            let x = i as f32 * 0.75 - 3.0;
+            span([x, -x, 7.0], [x + 0.5, 0.25 - x, 7.0])
+        };
+        for n in 1..=WIDTH {
+            let boxes: Vec<Aabb> = (0..n).map(child).collect();
+            let node = round_trip(&boxes);
+            for (i, bounds) in boxes.iter().enumerate() {
+                let decoded = node.child_box(i);
+                let looseness = (bounds.min - decoded.min).max(decoded.max - bounds.max);
+                assert!(
+                    looseness.cmple(2.0 * node.step + 1e-4).all(),
+                    "{n}, {i}: {looseness}"
+                );
+            }
+        }
+    }
+
+    /// Boxes of all sizes at all places.
+    #[test]
+    fn random_boxes_are_held() {
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as u32
+        };
+        // Sign, exponent and fraction are all random; no infinities.
+        let mut any = || f32::from_bits(next() << 1 ^ next()).clamp(f32::MIN, f32::MAX);
+        for i in 0..20_000 {
+            let mut point = || [any(), any(), any()].map(|x| if x.is_nan() { 0.0 } else { x });
+            let boxes: Vec<Aabb> = (0..i % WIDTH + 1)
+                .map(|_| Aabb::from_points(&[Vec3::from(point()), Vec3::from(point())]))
+                .collect();
+            round_trip(&boxes);
+        }
+    }
+
+    /// Negative control: a box that is larger by a step is not held.
+    #[test]
+    fn a_larger_box_is_not_held() {
+        let bounds = span([-1.0, 2.0, 3.0], [4.0, 5.0, 6.0]);
+        let node = round_trip(&[bounds, span([-2.0; 3], [9.0; 3])]);
+        for axis in 0..3 {
+            let mut larger = node.child_box(0);
+            larger.max[axis] = larger.max[axis].next_up();
+            assert!(!node.holds(0, &larger), "{axis}");
+            let mut smaller = node.child_box(0);
+            smaller.min[axis] = smaller.min[axis].next_down();
+            assert!(!node.holds(0, &smaller), "{axis}");
+        }
+        assert!(node.holds(0, &Aabb::EMPTY));
+    }
+
+    #[test]
+    fn a_pair_keeps_its_vertices() {
+        let [a, b, c, d] = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::splat(-0.0)];
+        let element = Element::pair([a, b, c, d], 77);
+        assert_eq!(element.vertices(), [a, b, c, d]);
+        assert_eq!(element.triangles(), [[a, b, c], [a, c, d]]);
+        assert_eq!(
+            (element.first_triangle(), &element.words[13..]),
+            (77, &[0; 3][..])
+        );
     }
 }

@@ -1,14 +1,16 @@
-//! The bounding volume hierarchy: pairs of triangles below nodes of up to eight children.
+//! The acceleration structure: pairs of triangles, below nodes of up to eight children or, where there
+//! are few of them, in a plain list.
 //!
 //! [`Bvh::build`] matches triangles into pairs ([`pair`]), builds a binary tree over them
 //! ([`binary`]) and collapses it into wide nodes with boxes of 8 bits a coordinate ([`element`]).
 //! [`Bvh::validate`] proves its structure, [`Bvh::sah_cost`] rates it, and [`Bvh::intersect`] and
-//! [`Bvh::occluded`] are the oracle of `shaders/accel/bvh.wgsl`, which does the same operations in
-//! the same order.
+//! [`Bvh::occluded`] are the oracle of `shaders/accel/bvh.wgsl` and `shaders/accel/list.wgsl`, which
+//! do the same operations in the same order.
 
 pub mod binary;
 mod cost;
 pub mod element;
+mod list;
 pub mod pair;
 mod primitive;
 mod traverse;
@@ -28,17 +30,43 @@ pub const MAX_DEPTH: u32 = binary::MAX_BINARY_DEPTH + 1;
 /// elements can still be counted ([`element::MAX_ELEMENTS`]).
 pub const MAX_TRIANGLES: usize = (1 << 27) - 1;
 
+/// Most pairs of a scene that is a list by default. A list costs a ray the test of every pair, but
+/// all lanes test the same one: no boxes, no stack, and one load for all.
+pub const LIST_LIMIT: usize = 32;
+
 /// What [`Bvh::build`] may be told.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BuildOptions {
     /// How much time to take for a better tree.
     pub preset: Preset,
+    /// Up to so many pairs are a list, more are a tree: with 0 it is always a tree. No triangles at
+    /// all are a list in any case.
+    pub list_limit: usize,
 }
 
-/// A bounding volume hierarchy over triangles.
+impl BuildOptions {
+    /// A preset, and what is usual for all else.
+    pub fn of(preset: Preset) -> Self {
+        Self {
+            preset,
+            ..Self::default()
+        }
+    }
+}
+
+impl Default for BuildOptions {
+    fn default() -> Self {
+        Self {
+            preset: Preset::default(),
+            list_limit: LIST_LIMIT,
+        }
+    }
+}
+
+/// A bounding volume hierarchy over triangles, or a list of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bvh {
-    /// Nodes and pairs; element 0 is the root, a node; a node comes before its children.
+    /// A tree's nodes and pairs; element 0 is the root, a node; a node comes before its children.
     pub elements: Vec<Element>,
     /// The triangles in the order of the tree.
     pub order: Vec<Placed>,
@@ -57,8 +85,13 @@ pub struct Placed {
 }
 
 impl Bvh {
+    /// Whether all elements are pairs, each to be tested by every ray.
+    pub fn is_list(&self) -> bool {
+        self.depth == 0
+    }
+
     /// Position in [`Bvh::order`] of the triangle of a hit.
     pub fn position(&self, id: u32) -> usize {
-        (self.elements[id as usize / 2].first_triangle() + (id & 1)) as usize
+        self.elements[id as usize / 2].first_triangle() as usize + (id & 1) as usize
     }
 }

@@ -5,14 +5,29 @@
 //! lies beside the ray, on an axis i, by at most 10 u |s dᵢ| + 5 u w, where w is the longest side of
 //! the triangle's box and u = 2⁻²⁴ (rounding of `v - o`, of the shear, of its two operations, and a
 //! division by 2.5 ulp as Vulkan has it); and |t - s| ≤ 20 u s + 13 u w / |d|ₘₐₓ, since the
-//! barycentrics are good to 8 u. A box computes its entry and exit to 7 u. So a box padded by 18 u w
-//! is entered no later than t (1 + 37 u) and left no sooner than t (1 - 37 u): [`Aabb::padded`]
-//! takes 32 u, and [`FAR_SLACK`] 64 u. Both the exit and the closest t so far are widened, so that
-//! a box whose triangle ties with the closest hit is entered in whatever order boxes come, and
-//! the hit does not depend on that order.
+//! barycentrics are good to 8 u.
+//!
+//! A plane of a box is q steps from the node's origin, and t = (origin - o) / d + q (step / d).
+//! The first term is good to 7 u of itself (a difference, a reciprocal of 2.5 ulp, a product), the
+//! second to 6 u (a reciprocal, a product; steps are powers of two), their sum is rounded once, and
+//! the first term is no larger than t and 255 steps together. So a plane's t is wrong by at most
+//! 8 u |t|, and by 13 u · 255 = 2^-12.3 steps, of which boxes have [`MARGIN`] = 2⁻¹⁰ to spare; with
+//! q = 0 the sum is the first term, and there are no steps to be wrong by.
+//!
+//! So a box padded by 18 u w is entered no later than t (1 + 38 u) and left no sooner than
+//! t (1 - 38 u), and its own entry is no later than its exit by more than 36 u:
+//! [`Aabb::padded`] takes 32 u, and [`FAR_SLACK`] 64 u. Both the exit and the closest t so far are
+//! widened, so that a box whose triangle ties with the closest hit is entered in whatever order boxes
+//! come, and the hit does not depend on that order.
+//!
+//! A direction component nearer to 0 than [`SMALLEST_SHARE`] of the largest moves by less than 2⁻⁵⁹
+//! of the distance from what the boxes are tested with. The padding that the above leaves, 14 u w,
+//! is more than this for every triangle larger than 2⁻³⁸ of its distance.
 
+#[cfg(doc)]
+use super::element::MARGIN;
 use super::element::{Element, WIDTH};
-use super::{Bvh, MAX_DEPTH};
+use super::{Bvh, MAX_DEPTH, list};
 #[cfg(doc)]
 use crate::geometry::Aabb;
 use crate::geometry::Ray;
@@ -23,11 +38,11 @@ use glam::Vec3;
 pub const FAR_SLACK: f32 = 1.000_003_8;
 
 /// A direction component nearer to 0 than this share of the largest is taken as this for the
-/// reciprocal, 2⁻⁶⁰: no box can tell, and nothing overflows.
+/// reciprocal, 2⁻⁶⁰, so that nothing overflows within 10¹⁹ m.
 const SMALLEST_SHARE: f32 = 8.673_617_4e-19;
 
 /// No triangle.
-const MISS: u32 = u32::MAX;
+pub(super) const MISS: u32 = u32::MAX;
 
 /// Marks a reference to a pair.
 const LEAF_FLAG: u32 = 1 << 31;
@@ -108,9 +123,10 @@ impl Group {
 }
 
 impl Bvh {
-    /// The closest hit; at equal t that with the smaller number.
+    /// The closest hit; at equal t that with the smaller number. A list puts hits in order by a t
+    /// that is good to a few u of the triangle's extent along the ray only (`accel::list`).
     ///
-    /// The tree has passed [`Bvh::validate`].
+    /// The structure has passed [`Bvh::validate`].
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         self.trace(ray, false, &mut Steps::default())
     }
@@ -122,6 +138,9 @@ impl Bvh {
 
     /// [`Bvh::intersect`], or with `any_hit` the first hit found, which counts its steps.
     pub fn trace(&self, ray: &Ray, any_hit: bool, steps: &mut Steps) -> Option<Hit> {
+        if self.is_list() {
+            return list::trace(&self.elements, ray, steps);
+        }
         let setup = RaySetup::new(ray.origin, ray.direction);
         let box_setup = BoxSetup::new(ray);
         let mut stack = [Group::default(); MAX_DEPTH as usize];
@@ -167,6 +186,11 @@ impl Bvh {
     }
 }
 
+/// Positive numbers are in the order of their bits, and all negative ones are before them.
+fn bits(t: f32) -> i32 {
+    t.to_bits() as i32
+}
+
 /// Tests the children of a node; those that are hit, the nearest first.
 fn visit(element: &Element, setup: &BoxSetup, t_max: f32) -> Group {
     let node = element.decode();
@@ -181,10 +205,13 @@ fn visit(element: &Element, setup: &BoxSetup, t_max: f32) -> Group {
         // Near and far planes are chosen by the ray's sign, so that an inverted box is missed.
         let near = |axis: usize| t(2 * axis + usize::from(setup.inverse[axis] < 0.0));
         let far = |axis: usize| t(2 * axis + usize::from(setup.inverse[axis] >= 0.0));
-        let entry = near(0).max(near(1)).max(near(2).max(0.0));
-        let exit = far(0).min(far(1)).min(far(2).min(t_max)) * FAR_SLACK;
+        let entry = bits(near(0)).max(bits(near(1))).max(bits(near(2)).max(0));
+        let exit = bits(far(0))
+            .min(bits(far(1)))
+            .min(bits(far(2)).min(bits(t_max)));
+        let exit = bits(f32::from_bits(exit as u32) * FAR_SLACK);
         let is_hit = entry <= exit && (slot as u32) < node.children;
-        let nearness = if is_hit { entry.to_bits() } else { u32::MAX } & !15;
+        let nearness = if is_hit { entry as u32 } else { u32::MAX } & !15;
         *key = nearness | if is_hit { slot as u32 + 1 } else { 0 };
     }
     keys.sort_unstable();
@@ -201,13 +228,13 @@ fn visit(element: &Element, setup: &BoxSetup, t_max: f32) -> Group {
 
 /// Tests both triangles of a pair and keeps the closest hit.
 fn test_pair(element: &Element, index: u32, setup: &RaySetup, best: &mut Hit) {
-    let (triangles, candidates) = fan_candidates(setup, element.vertices());
+    let fan = fan_candidates(setup, element.vertices());
     for slot in 0..2 {
-        if !candidates[slot] {
+        if !fan.candidates[slot] {
             continue;
         }
         let triangle = 2 * index + slot as u32;
-        if let Some(hit) = refined_hit(&triangles[slot])
+        if let Some(hit) = refined_hit(&fan.triangle(slot))
             && (hit.t < best.t || (hit.t == best.t && triangle < best.triangle))
         {
             *best = Hit {

@@ -1,4 +1,4 @@
-//! The proof that a tree is one that a traversal may trust: the device checks nothing.
+//! The proof that a structure is one that a traversal may trust: the device checks nothing.
 
 use super::element::Node;
 use super::{Bvh, MAX_DEPTH, MAX_TRIANGLES, Placed};
@@ -43,11 +43,11 @@ pub enum BvhError {
     SharedChild { node: usize, child: u32 },
     #[error("element {element} cannot be reached from the root")]
     Unreachable { element: usize },
+    #[error("pair {pair}: its vertices are not those of its triangles")]
+    Vertices { pair: u32 },
     #[error(
-        "node {node}: its child {child} is a pair whose vertices are not those of its triangles"
+        "node {node}: the box of its child {child} does not contain all of its triangles with the margins that a traversal needs"
     )]
-    Vertices { node: usize, child: u32 },
-    #[error("node {node}: the box of its child {child} does not contain all of its triangles")]
     Box { node: usize, child: u32 },
     #[error(
         "the tree says that a traversal needs {depth} stack entries, but it needs {needed} (at most {MAX_DEPTH} are allowed)"
@@ -65,17 +65,26 @@ enum Found {
 
 impl Bvh {
     /// Checks everything that a traversal relies on, in O(n): indices in range, no cycles, every
-    /// triangle in exactly one pair, every box around the exact bounds of its triangles, the depth.
-    /// `triangles` are those that the tree was built of, in their own order.
+    /// triangle in exactly one pair, every box around the padded bounds of its triangles with a margin,
+    /// the depth. `triangles` are those that it was built of, in their own order.
     pub fn validate(&self, triangles: &[[Vec3; 3]]) -> Result<(), BvhError> {
+        self.check_order(triangles)?;
+        if self.is_list() {
+            return self.check_list(triangles);
+        }
         if self.elements.is_empty() {
             return Err(BvhError::NoRoot);
         }
-        self.check_order(triangles)?;
         let (way, found) = self.walk()?;
         self.check_places(&found)?;
         self.check_depth(&way)?;
         self.check_boxes(&way, triangles)
+    }
+
+    fn check_list(&self, triangles: &[[Vec3; 3]]) -> Result<(), BvhError> {
+        self.check_places(&vec![Found::Pair; self.elements.len()])?;
+        let check = |pair| self.pair_bounds(pair as u32, triangles).map(|_| ());
+        (0..self.elements.len()).try_for_each(check)
     }
 
     fn check_order(&self, triangles: &[[Vec3; 3]]) -> Result<(), BvhError> {
@@ -155,10 +164,10 @@ impl Bvh {
             for slot in 0..decoded.children {
                 let child = decoded.first + slot;
                 if slot >= decoded.inner {
-                    exact[child as usize] = self.pair_bounds(node, child, triangles)?;
+                    exact[child as usize] = self.pair_bounds(child, triangles)?;
                 }
                 let bounds = exact[child as usize];
-                if !decoded.child_box(slot as usize).contains(&bounds) {
+                if !decoded.holds(slot as usize, &bounds.padded()) {
                     return Err(BvhError::Box { node, child });
                 }
                 exact[node] = exact[node].union(bounds);
@@ -167,35 +176,31 @@ impl Bvh {
         Ok(())
     }
 
-    /// The exact bounds of a pair's triangles, whose vertices must be those of the input; of a pair
-    /// in no triangle's place, the one of an empty tree, nothing.
-    fn pair_bounds(
-        &self,
-        node: usize,
-        pair: u32,
-        triangles: &[[Vec3; 3]],
-    ) -> Result<Aabb, BvhError> {
+    /// The exact bounds of a pair's triangles, whose vertices must be those of the input.
+    fn pair_bounds(&self, pair: u32, triangles: &[[Vec3; 3]]) -> Result<Aabb, BvhError> {
         let element = &self.elements[pair as usize];
-        let is_mine = |id: u32| {
-            let position = element.first_triangle() as usize + (id & 1) as usize;
-            self.order.get(position).filter(|placed| placed.id == id)
-        };
         let mut bounds = Aabb::EMPTY;
         for (slot, held) in element.triangles().into_iter().enumerate() {
-            let Some(placed) = is_mine(2 * pair + slot as u32) else {
-                // No triangle: nothing that a ray can hit may be there.
-                if held[0] != held[2] {
-                    return Err(BvhError::Vertices { node, child: pair });
+            let is_right = match self.placed(pair, slot) {
+                Some(Placed { turned, .. }) => {
+                    held == turned.corners(triangles[turned.triangle as usize])
                 }
-                continue;
+                // Where no second triangle is, nothing that a ray can hit may be.
+                None => slot == 1 && held[2] == held[0],
             };
-            let turned = placed.turned;
-            if held != turned.corners(triangles[turned.triangle as usize]) {
-                return Err(BvhError::Vertices { node, child: pair });
+            if !is_right {
+                return Err(BvhError::Vertices { pair });
             }
             bounds = bounds.union(Aabb::from_points(&held));
         }
         Ok(bounds)
+    }
+
+    /// The triangle that is said to be in a pair's first or second place.
+    fn placed(&self, pair: u32, slot: usize) -> Option<&Placed> {
+        let first = self.elements[pair as usize].first_triangle() as usize;
+        let placed = self.order.get(first + slot);
+        placed.filter(|placed| placed.id as usize == 2 * pair as usize + slot)
     }
 }
 

@@ -10,13 +10,12 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 impl Bvh {
-    /// Builds the tree over triangles whose vertices are all finite, in any number up to
-    /// [`super::MAX_TRIANGLES`] (which the caller checks). Same input, same tree, bit for bit,
-    /// whatever the number of threads.
+    /// Builds the structure over triangles whose vertices are all finite, in any number up to
+    /// [`super::MAX_TRIANGLES`] (which the caller checks). Same input, same
+    /// structure, bit for bit, whatever the number of threads.
     pub fn build(triangles: &[[Vec3; 3]], options: &BuildOptions) -> Bvh {
         let pairs = pairs(triangles);
-        let limit: usize = std::env::var("LISTN").map_or(64, |v| v.parse().unwrap());
-        if pairs.len() <= limit {
+        if pairs.is_empty() || pairs.len() <= options.list_limit {
             return list(&pairs, triangles);
         }
         let tree = BinaryTree::build(&primitives(&pairs, triangles), options.preset);
@@ -28,7 +27,6 @@ impl Bvh {
                 let vertices = pairs[i as usize].vertices(triangles);
                 Element::pair(vertices, plan.positions[i as usize])
             }
-            Kind::Nothing => Element::pair([Vec3::ZERO; 4], 0),
         };
         Bvh {
             elements: plan.kinds.par_iter().map(element).collect(),
@@ -75,8 +73,6 @@ enum Kind {
     Node(u32),
     /// Pair of the list.
     Pair(u32),
-    /// A pair that no ray hits: the only child in a tree without triangles.
-    Nothing,
 }
 
 /// Where everything goes.
@@ -91,7 +87,7 @@ struct Plan {
 impl Plan {
     fn new(topology: &WideTopology, tree: &BinaryTree, pairs: &[Pair]) -> Plan {
         let mut plan = Plan {
-            kinds: Vec::with_capacity(topology.nodes.len() + pairs.len().max(1)),
+            kinds: Vec::with_capacity(topology.nodes.len() + pairs.len()),
             first_child: Vec::with_capacity(topology.nodes.len()),
             positions: vec![0; pairs.len()],
         };
@@ -112,9 +108,6 @@ impl Plan {
                 position += 1 + u32::from(pairs[pair as usize].second.is_some());
             }
         }
-        if pairs.is_empty() {
-            plan.kinds.push(Kind::Nothing);
-        }
         debug_assert!(plan.kinds.len() <= MAX_ELEMENTS);
         plan
     }
@@ -125,10 +118,7 @@ impl Plan {
         let padded = |&child: &u32| tree.nodes[child as usize].bounds.padded();
         let inner = children.iter().filter(|c| !is_leaf(c));
         let leaves = children.iter().filter(|c| is_leaf(c));
-        let mut boxes: Vec<Aabb> = inner.clone().chain(leaves).map(padded).collect();
-        if boxes.is_empty() {
-            boxes.push(Aabb::from_points(&[Vec3::ZERO]).padded());
-        }
+        let boxes: Vec<Aabb> = inner.clone().chain(leaves).map(padded).collect();
         Element::node(&boxes, inner.count() as u32, self.first_child[i])
     }
 }

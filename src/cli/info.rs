@@ -66,6 +66,6 @@ struct Described {
 
 fn build(scene: &Scene, preset: Preset) -> Result<BvhReport> {
     // The camera is the origin only; the loader sees to it that there is one.
-    let prepared = Prepared::new(scene, 0, &BuildOptions { preset })?;
+    let prepared = Prepared::new(scene, 0, &BuildOptions::of(preset))?;
     Ok(BvhReport::new(preset, &prepared))
 }

@@ -104,6 +104,39 @@ fn signs_differ(e: Vec3) -> bool {
 /// A triangle in the ray's own space.
 pub type Sheared = [Vec3; 3];
 
+/// The triangles `(a, b, c)` and `(a, c, d)` of a fan in the ray's own space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FanCandidates {
+    /// `a`, `b`, `c`, `d`.
+    pub vertices: [Vec3; 4],
+    /// The quick values of each triangle's edges, opposite to its vertices: right in sign where they
+    /// are not 0.
+    pub edges: [Vec3; 2],
+    /// Whether [`intersect_triangle`] would go on with each after its quick test.
+    pub candidates: [bool; 2],
+}
+
+impl FanCandidates {
+    /// Triangle 0 or 1.
+    pub fn triangle(&self, slot: usize) -> Sheared {
+        let [a, b, c, d] = self.vertices;
+        [[a, b, c], [a, c, d]][slot]
+    }
+
+    /// The hit by the quick values: as [`refined_hit`] has it, but less precise, and met wherever
+    /// the quick edges leave it open. `t` may be 0, negative or not a number: then there is none.
+    pub fn quick_hit(&self, slot: usize) -> TriangleHit {
+        let [a, b, c] = self.triangle(slot);
+        let edges = self.edges[slot];
+        let determinant = (edges.x + edges.y) + edges.z;
+        TriangleHit {
+            t: exact_depth(edges, a, b, c) / determinant,
+            b: (edges / determinant).to_array(),
+            back_face: determinant < 0.0,
+        }
+    }
+}
+
 /// Intersects the ray of `setup` with a triangle, both sides; t is any positive number.
 ///
 /// A triangle that the ray sees edge-on, or that is degenerate, is missed.
@@ -122,18 +155,23 @@ pub fn intersect_triangle(setup: &RaySetup, v0: Vec3, v1: Vec3, v2: Vec3) -> Opt
     refined_hit(&sheared)
 }
 
-/// The triangles `(v0, v1, v2)` and `(v0, v2, v3)` of a fan in the ray's own space, and whether
-/// [`intersect_triangle`] would go on with each after its quick test. The shared edge's value is
-/// found once: for the other triangle it has the other sign, exactly.
-pub fn fan_candidates(setup: &RaySetup, vertices: [Vec3; 4]) -> ([Sheared; 2], [bool; 2]) {
-    let [a, b, c, d] = vertices.map(|v| exact_shear(setup, v));
-    let shared = exact_edge(xy(a), xy(c));
-    let first = Vec3::new(exact_edge(xy(c), xy(b)), shared, exact_edge(xy(b), xy(a)));
-    let second = Vec3::new(exact_edge(xy(d), xy(c)), exact_edge(xy(a), xy(d)), -shared);
-    (
-        [[a, b, c], [a, c, d]],
-        [!signs_differ(first), !signs_differ(second)],
-    )
+/// Both triangles of a fan after their quick test. The shared edge's value is found once: for the
+/// other triangle it has the other sign, exactly.
+pub fn fan_candidates(setup: &RaySetup, vertices: [Vec3; 4]) -> FanCandidates {
+    let vertices = vertices.map(|v| exact_shear(setup, v));
+    let [a, b, c, d] = vertices;
+    let diagonal = exact_edge(xy(a), xy(c));
+    let first = Vec3::new(exact_edge(xy(c), xy(b)), diagonal, exact_edge(xy(b), xy(a)));
+    let second = Vec3::new(
+        exact_edge(xy(d), xy(c)),
+        exact_edge(xy(a), xy(d)),
+        -diagonal,
+    );
+    FanCandidates {
+        vertices,
+        edges: [first, second],
+        candidates: [!signs_differ(first), !signs_differ(second)],
+    }
 }
 
 /// The second half of [`intersect_triangle`]: decides the zeros, and finds the values to nearly

@@ -11,8 +11,9 @@ use crate::accel::Element;
 pub fn list_wgsl(elements: &[Element]) -> String {
     let mut text = String::from(
         "// Generated: the pairs of the scene, by the vertices that they share.\n\
-         fn closest_of_all(setup: RaySetup, ray: Ray) -> ListHit {\n\
-         \x20   var hit = ListHit(ray.t_max, MISS);\n",
+         fn closest_of_all(setup: RaySetup, ray: Ray, camera_ray: bool, seed: u32) -> ListHit {\n\
+         \x20   // A hit at t_max counts.\n\
+         \x20   var hit = ListHit(bitcast<f32>(bitcast<u32>(ray.t_max) + 1u), MISS);\n",
     );
     let mut names: HashMap<[u32; 3], String> = HashMap::new();
     for (i, element) in elements.iter().enumerate() {
@@ -31,7 +32,7 @@ pub fn list_wgsl(elements: &[Element]) -> String {
         }
         let _ = writeln!(
             text,
-            "    hit = closer_of_pair(hit, {}u, ray, {});",
+            "    hit = closer_of_pair(hit, {}u, ray, camera_ray, seed, {});",
             2 * i,
             fan.join(", ")
         );

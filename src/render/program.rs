@@ -3,8 +3,10 @@
 use super::error::RenderError;
 use super::gpu_scene::GpuScene;
 use super::layout::layouts;
+use super::list_wgsl::list_wgsl;
 use super::prepared::Prepared;
 use super::settings::Settings;
+use crate::accel::Bvh;
 use crate::host::stages::stage;
 use crate::scene::Features;
 use crate::shader::{
@@ -56,16 +58,24 @@ pub fn virtual_files(
         "buffers.wgsl".into(),
         gpu_scene.buffers_wgsl(settings.doublewords),
     );
-    let structure = if scene.bvh.depth == 0 { "list" } else { "bvh" };
-    if scene.bvh.depth == 0 {
-        let text = super::list_wgsl::list_wgsl(&scene.bvh.elements);
-        files.insert("list.wgsl".into(), text);
-    }
-    files.insert(
-        "accel.wgsl".into(),
-        format!("#include \"accel/{structure}.wgsl\"\n"),
-    );
+    files.extend(accel_files(&scene.bvh));
     Ok(files)
+}
+
+/// The `accel.wgsl` of an acceleration structure, and of a list its `list.wgsl`.
+pub fn accel_files(bvh: &Bvh) -> VirtualFiles {
+    let include = |name: &str| {
+        (
+            "accel.wgsl".into(),
+            format!("#include \"accel/{name}.wgsl\"\n"),
+        )
+    };
+    if bvh.is_list() {
+        let pairs = ("list.wgsl".into(), list_wgsl(&bvh.elements));
+        VirtualFiles::from([include("list"), pairs])
+    } else {
+        VirtualFiles::from([include("bvh")])
+    }
 }
 
 /// The files that include the chosen integrator and sampler.
@@ -138,7 +148,6 @@ pub fn constants(
         ("UV0_OFFSET", offset(format.uv0)),
         ("UV1_OFFSET", offset(format.uv1)),
         ("COLOR_OFFSET", offset(format.colors)),
-        ("PAIR_COUNT", Constant::U32(scene.bvh.elements.len() as u32)),
         ("STACK_SIZE", Constant::U32(scene.bvh.depth.max(1))),
         ("COUNT_STEPS", Constant::Bool(count_steps)),
         ("COUNT_RAYS", Constant::Bool(settings.stats)),

@@ -1,9 +1,12 @@
 //! The kernels that `etendue shaders check` and the tests compile, without any device or scene.
 
+use glam::Vec3;
+
 use super::error::RenderError;
 use super::paged::large_arrays_wgsl;
 use super::program::{self, Constant, ENTRY_FILE, feature_constants, features_wgsl};
 use super::settings::Settings;
+use crate::accel::{BuildOptions, Bvh};
 use crate::scene::Features;
 use crate::shader::{Check, CompileOptions, ShaderLibrary, StructLayout, VirtualFiles};
 
@@ -18,22 +21,27 @@ pub struct Variant {
     pub pages: usize,
     /// Whether bounds are checked.
     pub checked: bool,
+    /// Whether the acceleration structure is a list instead of a tree.
+    pub list: bool,
 }
 
 /// The extremes: nothing and everything, each as it is rendered by default, and split over pages
-/// with bounds checks.
+/// with bounds checks; and both in a scene so small that it is a list.
 pub fn variants() -> Vec<Variant> {
-    let variant = |name, on, pages, checked| Variant {
+    let variant = |name, on, pages, checked, list| Variant {
         name,
         constants: constants(on),
         pages,
         checked,
+        list,
     };
     vec![
-        variant("no feature", false, 1, false),
-        variant("every feature", true, 1, false),
-        variant("no feature, paged, checked", false, 3, true),
-        variant("every feature, paged, checked", true, 3, true),
+        variant("no feature", false, 1, false, false),
+        variant("every feature", true, 1, false, false),
+        variant("no feature, paged, checked", false, 3, true, false),
+        variant("every feature, paged, checked", true, 3, true, false),
+        variant("no feature, list", false, 1, false, true),
+        variant("every feature, list, paged, checked", true, 3, true, true),
     ]
 }
 
@@ -61,20 +69,32 @@ pub fn constants(on: bool) -> Vec<(&'static str, Constant)> {
     constants
 }
 
-/// The generated files of a kernel.
+/// The generated files of a kernel with the integrator and the sampler of the settings.
 ///
 /// # Errors
 /// [`RenderError::Unknown`].
 pub fn virtual_files(
     library: &ShaderLibrary,
     settings: &Settings,
-    constants: &[(&'static str, Constant)],
-    pages: usize,
+    variant: &Variant,
 ) -> Result<VirtualFiles, RenderError> {
     let mut files = program::choice_files(library, settings)?;
-    files.insert("features.wgsl".into(), features_wgsl(constants));
-    files.insert("buffers.wgsl".into(), large_arrays_wgsl(pages));
+    let features = features_wgsl(&variant.constants);
+    files.insert("features.wgsl".into(), features);
+    files.insert("buffers.wgsl".into(), large_arrays_wgsl(variant.pages));
+    files.extend(program::accel_files(&small_structure(variant.list)));
     Ok(files)
+}
+
+/// A structure over two pairs that share an edge.
+fn small_structure(list: bool) -> Bvh {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::ONE, Vec3::Y, Vec3::NEG_X];
+    let triangle = |i: usize| [corners[0], corners[i], corners[i + 1]];
+    let options = BuildOptions {
+        list_limit: if list { usize::MAX } else { 0 },
+        ..BuildOptions::default()
+    };
+    Bvh::build(&[triangle(1), triangle(2), triangle(3)], &options)
 }
 
 /// Every integrator with the default sampler and every sampler with the default integrator would
@@ -122,7 +142,7 @@ fn check<'a>(
     };
     Ok(Check {
         name: format!("{integrator}, {sampler}, {}", variant.name),
-        virtuals: virtual_files(library, &settings, &variant.constants, variant.pages)?,
+        virtuals: virtual_files(library, &settings, variant)?,
         entry: ENTRY_FILE.into(),
         options: CompileOptions {
             checked: variant.checked,

@@ -3,48 +3,48 @@
 
 mod meshes;
 
-use etendue::accel::{BuildOptions, Bvh, Hit, MAX_LEAF_SIZE};
+use etendue::accel::{BuildOptions, Bvh, Hit};
 use etendue::geometry::{Ray, RaySetup, triangle::intersect_triangle};
 use glam::Vec3;
 
 pub use meshes::*;
 
-/// Builds, validates, and returns the triangles in the tree's order too.
-pub fn build(triangles: &[[Vec3; 3]], max_leaf_size: u32, bins: usize) -> (Bvh, Triangles) {
-    let bvh = Bvh::build(
-        triangles,
-        &BuildOptions {
-            max_leaf_size,
-            bins,
-            ..BuildOptions::default()
-        },
-    );
+/// A tree, however few triangles there are.
+pub const TREE: usize = 0;
+/// A list, however many.
+pub const LIST: usize = usize::MAX;
+
+/// Builds with a `list_limit` and validates.
+pub fn build(triangles: &[[Vec3; 3]], list_limit: usize) -> Bvh {
+    let options = BuildOptions {
+        list_limit,
+        ..BuildOptions::default()
+    };
+    let bvh = Bvh::build(triangles, &options);
     if let Err(error) = bvh.validate(triangles) {
-        panic!("leaves of {max_leaf_size}, {bins} bins: {error}");
+        panic!("{error}");
     }
-    let largest = bvh
-        .nodes
-        .iter()
-        .map(|n| n.left_count.max(n.right_count))
-        .max();
-    assert!(largest <= Some(max_leaf_size.clamp(1, MAX_LEAF_SIZE)));
+    assert_eq!(bvh.is_list(), list_limit == LIST || triangles.is_empty());
     assert!(bvh.sah_cost().is_finite());
-    let ordered = bvh.reorder(triangles);
-    (bvh, ordered)
+    bvh
 }
 
-/// Every triangle in turn; the first of the closest.
-pub fn brute_force(triangles: &[[Vec3; 3]], ray: &Ray) -> Option<Hit> {
+/// Every triangle in turn; the closest, at equal t the one with the smaller number.
+pub fn brute_force(bvh: &Bvh, triangles: &[[Vec3; 3]], ray: &Ray) -> Option<Hit> {
     let setup = RaySetup::new(ray.origin, ray.direction);
     let mut best: Option<Hit> = None;
-    for (i, &[v0, v1, v2]) in triangles.iter().enumerate() {
+    for placed in &bvh.order {
+        let [v0, v1, v2] = placed
+            .turned
+            .corners(triangles[placed.turned.triangle as usize]);
         let Some(hit) = intersect_triangle(&setup, v0, v1, v2) else {
             continue;
         };
-        if hit.t <= ray.t_max && best.is_none_or(|b| hit.t < b.t) {
+        let is_closer = |b: Hit| (hit.t, placed.id) < (b.t, b.triangle);
+        if hit.t <= ray.t_max && best.is_none_or(is_closer) {
             best = Some(Hit {
                 t: hit.t,
-                triangle: i as u32,
+                triangle: placed.id,
                 b: hit.b,
                 back_face: hit.back_face,
             });

@@ -15,10 +15,11 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use bytemuck::Pod;
+use etendue::accel::Bvh;
 use etendue::gpu::{BindingKind, Bound, Buffer, Device, Pipeline};
 use etendue::render::large_arrays_wgsl;
 use etendue::render::layout::layouts;
-use etendue::render::program::{Constant, feature_constants, features_wgsl};
+use etendue::render::program::{Constant, accel_files, feature_constants, features_wgsl};
 use etendue::scene::Features;
 use etendue::shader::{
     self, CompileOptions, ShaderLibrary, VirtualFiles, compile as compile_shader, compose,
@@ -47,6 +48,8 @@ pub struct Setup {
     constants: BTreeMap<&'static str, Constant>,
     sampler: &'static str,
     patches: Vec<(&'static str, &'static str, &'static str)>,
+    /// The generated files of the acceleration structure.
+    accel: VirtualFiles,
 }
 
 impl Setup {
@@ -80,7 +83,17 @@ impl Setup {
             constants,
             sampler: "independent",
             patches: Vec::new(),
+            accel: VirtualFiles::from([(
+                "accel.wgsl".into(),
+                "#include \"accel/bvh.wgsl\"\n".into(),
+            )]),
         }
+    }
+
+    /// For a scene's acceleration structure, which is a tree unless said otherwise.
+    pub fn structure(mut self, bvh: &Bvh) -> Self {
+        self.accel = accel_files(bvh);
+        self.with([("STACK_SIZE", Constant::U32(bvh.depth.max(1)))])
     }
 
     /// Sets constants of `features.wgsl`.
@@ -123,6 +136,7 @@ impl Setup {
                 "#include \"integrator/path.wgsl\"\n".into(),
             ),
         ]);
+        files.extend(self.accel.clone());
         for (file, from, to) in &self.patches {
             let text = files.get(*file).map(String::as_str);
             let text = text.unwrap_or_else(|| library.read(file).expect("a library file"));
@@ -137,9 +151,8 @@ impl Setup {
 pub const FRAME: u32 = 0;
 pub const TEXTURES: u32 = 5;
 pub const SRGB_TABLE: u32 = 8;
-pub const NODES: u32 = 16;
-pub const TRIANGLES: u32 = 17;
-pub const TEXEL_WORDS: u32 = 20;
+pub const ELEMENTS: u32 = 16;
+pub const TEXEL_WORDS: u32 = 19;
 
 const PARAMS: u32 = 13;
 const INPUTS: u32 = 14;
