@@ -22,7 +22,7 @@
 const TILE_SIZE: u32 = 8u;
 
 // Elements of the acceleration structure that a lane looks at before lanes that are done go on.
-override TRACE_ELEMENTS: u32 = 16u;
+override TRACE_ELEMENTS: u32 = 8u;
 
 @compute @workgroup_size(64, 1, 1)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -58,6 +58,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
             let sample_index = add_u64(dispatch.first_sample_low, dispatch.first_sample_high, pixel.count);
             random = sampler_begin(position, sample_index, frame.seed);
             path = path_begin(camera_ray(position, next_2d(&random)), &random);
+            on_its_way = true;
         }
         if (!tracing) {
             traversal = begin_query(path_query(path, &random));

@@ -1,6 +1,6 @@
 //! Étendue: a headless, physically based path tracer for any Vulkan device.
 //!
-//! The layers import only downwards: [`geometry`], [`accel`], [`scene`],
+//! The layers import only downwards: [`host`], [`geometry`], [`accel`], [`scene`],
 //! [`shader`], [`gpu`], [`image`], [`render`], [`study`], [`cli`].
 //! `ARCHITECTURE.md` describes what each one owns.
 
@@ -8,6 +8,7 @@ pub mod accel;
 pub mod cli;
 pub mod geometry;
 pub mod gpu;
+pub mod host;
 pub mod image;
 pub mod render;
 pub mod scene;

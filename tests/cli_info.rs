@@ -41,6 +41,23 @@ fn info_shows_a_scene_as_text_and_as_json() {
 }
 
 #[test]
+fn info_builds_the_acceleration_structure_when_asked() {
+    for preset in ["fast", "balanced", "best"] {
+        let arguments = ["info", "scenes/foliage.gltf", "--bvh", preset];
+        let text = etendue(&arguments).ends_with(0).stdout;
+        assert!(text.contains("acceleration structure"), "{text}");
+        let json = etendue(&[&arguments[..], &["--json"]].concat()).ends_with(0);
+        let bvh = &json.json()["bvh"];
+        assert_eq!(bvh["preset"], preset);
+        assert!(bvh["seconds"].as_f64() > Some(0.0));
+        assert!(bvh["bytes"].as_u64() > Some(0));
+    }
+    let without = etendue(&["info", "scenes/foliage.gltf", "--json"]).ends_with(0);
+    assert!(without.json()["bvh"].is_null());
+    etendue(&["info", "scenes/foliage.gltf", "--bvh", "worst"]).refused(&["worst", "balanced"]);
+}
+
+#[test]
 fn info_needs_no_device() {
     let mut command = cli_support::command(&["info", "scenes/furnace.gltf"]);
     // The loader then finds no driver.

@@ -186,7 +186,9 @@ fn light_probabilities(bench: &Bench) -> Vec<f64> {
     for light in &bench.stage.prepared.lights {
         let item = (light.kind_and_index & 0x3fff_ffff) as usize;
         let place = match light.kind_and_index >> 30 {
-            0 => bench.stage.prepared.triangles[item].v0[0].round() as usize,
+            0 => bench.stage.prepared.bvh.elements[item / 2].triangles()[item % 2][0]
+                .x
+                .round() as usize,
             1 => LAMPS + item,
             _ => LAMPS + POINTS,
         };

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Lowest first: a layer may use those before it.
-const LAYERS: [&str; 9] = [
-    "geometry", "accel", "scene", "shader", "gpu", "image", "render", "study", "cli",
+const LAYERS: [&str; 10] = [
+    "host", "geometry", "accel", "scene", "shader", "gpu", "image", "render", "study", "cli",
 ];
 
 /// Words that only the files below a folder may contain.

@@ -44,6 +44,16 @@ pub struct BuildOptions {
     pub list_limit: usize,
 }
 
+impl BuildOptions {
+    /// A preset, and what is usual for all else.
+    pub fn of(preset: Preset) -> Self {
+        Self {
+            preset,
+            ..Self::default()
+        }
+    }
+}
+
 impl Default for BuildOptions {
     fn default() -> Self {
         Self {

@@ -1,7 +1,6 @@
-//! What the builder moves about instead of triangles.
+//! What trees are built over.
 
 use crate::geometry::Aabb;
-use glam::Vec3;
 use rayon::prelude::*;
 
 /// A box to build a tree over, such as a triangle's exact bounds, and its index in the input.
@@ -13,38 +12,9 @@ pub struct Primitive {
     pub index: u32,
 }
 
-impl Primitive {
-    /// The middle of the box, by which primitives are split.
-    pub fn centroid(&self) -> Vec3 {
-        self.bounds.center()
-    }
-}
-
-/// One primitive a triangle, in the order of the input.
-pub(super) fn primitives(triangles: &[[Vec3; 3]]) -> Vec<Primitive> {
-    triangles
-        .par_iter()
-        .enumerate()
-        .map(|(i, triangle)| {
-            // Adding 0 turns -0 into +0, so that no minimum depends on the order of its arguments.
-            let vertices = triangle.map(|v| v + Vec3::ZERO);
-            Primitive {
-                bounds: Aabb::from_points(&vertices),
-                index: i as u32,
-            }
-        })
-        .collect()
-}
-
 /// The bounds of all boxes.
 pub(super) fn bounds(primitives: &[Primitive]) -> Aabb {
     let add = |acc: &mut Aabb, p: &Primitive| *acc = acc.union(p.bounds);
-    fold_slices(primitives, || Aabb::EMPTY, add, Aabb::union)
-}
-
-/// The bounds of all centroids.
-pub(super) fn centroid_bounds(primitives: &[Primitive]) -> Aabb {
-    let add = |acc: &mut Aabb, p: &Primitive| *acc = acc.with_point(p.centroid());
     fold_slices(primitives, || Aabb::EMPTY, add, Aabb::union)
 }
 

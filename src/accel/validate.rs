@@ -55,6 +55,9 @@ pub enum BvhError {
     Depth { depth: u32, needed: u32 },
 }
 
+/// Nodes, each after its parent, with their levels.
+type Way = Vec<(usize, u32)>;
+
 /// What is known of an element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Found {
@@ -107,7 +110,7 @@ impl Bvh {
     }
 
     /// All nodes, each after its parent, with their level (the root's is 1), and what each element is.
-    fn walk(&self) -> Result<(Vec<(usize, u32)>, Vec<Found>), BvhError> {
+    fn walk(&self) -> Result<(Way, Vec<Found>), BvhError> {
         let elements = self.elements.len();
         let mut found = vec![Found::No; elements];
         found[0] = Found::Node;

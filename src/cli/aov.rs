@@ -11,6 +11,7 @@ use super::progress::ProgressLine;
 use super::report::warn_non_finite;
 use super::settings::aov_integrators;
 use crate::gpu::Device;
+use crate::host::stages::{self, stage};
 use crate::render::{Film, GpuScene, Prepared, RenderError, Renderer, Settings, program};
 use crate::scene::Scene;
 use crate::shader::{ShaderError, ShaderLibrary};
@@ -48,7 +49,7 @@ impl<'a> Stage<'a> {
 
     /// Compiles without the driver. Gives the names of the overrides that the shader declares.
     fn compile(&self, settings: &Settings) -> Result<Vec<String>, RenderError> {
-        let count_steps = self.device.probe()?.loop_limit.is_some();
+        let count_steps = stage("probe", || self.device.probe())?.loop_limit.is_some();
         let (prepared, gpu_scene) = (self.prepared, self.gpu_scene);
         let files =
             program::virtual_files(self.library, settings, prepared, gpu_scene, count_steps)?;
@@ -180,6 +181,7 @@ pub fn run(
 ) -> Result<ControlFlow<()>, RenderError> {
     let mut line = ProgressLine::new(&settings.integrator, settings.spp, quiet);
     renderer.render(&mut |renderer, progress| {
+        stages::first_sample();
         line.update(renderer, progress);
         match interrupt.requested() && progress.samples_done < progress.samples_total {
             true => ControlFlow::Break(()),

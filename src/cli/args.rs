@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::environment::EnvironmentArg;
 use super::parse;
+use crate::accel::Preset;
 use crate::image::ToneMap;
 use crate::scene::Selector;
 
@@ -50,6 +51,11 @@ pub struct RenderArgs {
     /// Edges of the longest path: 1 shows only emitters seen directly, 2 adds direct light, and so on
     #[arg(long, value_name = "N", default_value_t = 8)]
     pub max_depth: u32,
+
+    /// How much time to spend on the acceleration structure: fast, balanced, or best, which pays in
+    /// long renders
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub bvh: Preset,
 
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -47,7 +47,11 @@ impl Exit {
             cause.is::<GpuError>()
                 || matches!(
                     render,
-                    Some(RenderError::Gpu(_) | RenderError::LoopLimit { .. })
+                    Some(
+                        RenderError::Gpu(_)
+                            | RenderError::LoopLimit { .. }
+                            | RenderError::NoInt64 { .. }
+                    )
                 )
         });
         if device { Self::Device } else { Self::BadInput }

@@ -4,10 +4,14 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Args;
+use serde::Serialize;
 
+use super::bvh_report::BvhReport;
 use super::exit::Exit;
 use super::{info_text, message};
-use crate::scene::{Selector, Summary, gltf};
+use crate::accel::{BuildOptions, Preset};
+use crate::render::Prepared;
+use crate::scene::{Scene, Selector, Summary, gltf};
 
 /// Arguments of `etendue info`.
 #[derive(Debug, Args)]
@@ -19,6 +23,11 @@ pub struct InfoArgs {
     /// Which scene of the file [default: the one that the file shows first]
     #[arg(long, value_name = "NAME|INDEX")]
     scene: Option<Selector>,
+
+    /// Build the acceleration structure too, as `etendue render` does with this preset (fast,
+    /// balanced or best), and tell its build time and size
+    #[arg(long, value_name = "NAME")]
+    bvh: Option<Preset>,
 
     /// Print it as JSON
     #[arg(long)]
@@ -36,10 +45,27 @@ pub fn run(args: &InfoArgs) -> Result<Exit> {
     let scene = gltf::load(&args.file, &options)?;
     let valid = scene.validate();
     valid.with_context(|| args.file.display().to_string())?;
-    let summary = Summary::of(&scene);
+    let described = Described {
+        summary: Summary::of(&scene),
+        bvh: args.bvh.map(|preset| build(&scene, preset)).transpose()?,
+    };
     let text = match args.json {
-        true => serde_json::to_string_pretty(&summary)? + "\n",
-        false => info_text::describe(&summary),
+        true => serde_json::to_string_pretty(&described)? + "\n",
+        false => info_text::describe(&described.summary, described.bvh.as_ref()),
     };
     message::print(&text).map(|()| Exit::Fine)
+}
+
+#[derive(Serialize)]
+struct Described {
+    #[serde(flatten)]
+    summary: Summary,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bvh: Option<BvhReport>,
+}
+
+fn build(scene: &Scene, preset: Preset) -> Result<BvhReport> {
+    // The camera is the origin only; the loader sees to it that there is one.
+    let prepared = Prepared::new(scene, 0, &BuildOptions::of(preset))?;
+    Ok(BvhReport::new(preset, &prepared))
 }

@@ -3,14 +3,19 @@
 //! Names come from the file and are shown quoted and escaped, so that none of them disturbs a
 //! terminal.
 
+use super::bvh_report::BvhReport;
 use crate::scene::Summary;
 
 /// Rows of cells, to be aligned.
 type Rows = Vec<Vec<String>>;
 
 /// The whole text.
-pub fn describe(summary: &Summary) -> String {
+pub fn describe(summary: &Summary, bvh: Option<&BvhReport>) -> String {
     let mut text = overview(summary);
+    text += &table(
+        "acceleration structure",
+        bvh.map_or(vec![], BvhReport::rows),
+    );
     text += &table("cameras", cameras(summary));
     text += &table("lights", lights(summary));
     text += &table("materials", materials(summary));

@@ -4,6 +4,7 @@
 
 mod aov;
 mod args;
+mod bvh_report;
 mod devices;
 mod environment;
 mod exit;
@@ -25,11 +26,17 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::host::stages;
 use exit::Exit;
+
+/// What `--help` says about the environment.
+const ENVIRONMENT: &str = "\
+Environment: ETENDUE_DEVICE is the default of --device. Compiled shaders are kept in \
+ETENDUE_CACHE_DIR (default: etendue/kernels in XDG_CACHE_HOME or ~/.cache); ETENDUE_NO_CACHE=1 keeps none.";
 
 /// Étendue: a headless path tracer. glTF in, OpenEXR out, on any Vulkan device.
 #[derive(Debug, Parser)]
-#[command(name = "etendue", version, after_help = exit::HELP, max_term_width = 100)]
+#[command(name = "etendue", version, after_help = format!("{}\n\n{ENVIRONMENT}", exit::HELP), max_term_width = 100)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -49,6 +56,8 @@ enum Command {
 
 /// Runs the program with the arguments of the process. No panic reaches the user.
 pub fn main() -> ExitCode {
+    crate::gpu::prefer_widest_vectors();
+    stages::begin();
     std::panic::set_hook(Box::new(message::internal_error));
     let run = AssertUnwindSafe(|| run(&Cli::parse()));
     let exit = catch_unwind(run).unwrap_or(Exit::Internal);

@@ -1,11 +1,13 @@
 //! `etendue render`: the way of a picture through the program.
 
+use std::panic::resume_unwind;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
 
 use super::aov::{self, Layers, Stage};
 use super::args::RenderArgs;
+use super::bvh_report::BvhReport;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::message::{self, Warnings};
@@ -15,6 +17,8 @@ use super::report::{Report, Seconds, timed};
 use super::{environment, settings, shaders};
 use crate::accel::BuildOptions;
 use crate::gpu::Device;
+use crate::host::Cache;
+use crate::host::stages::stage;
 use crate::image::{Channel, Layer, Metadata, Picture};
 use crate::render::{Film, GpuScene, Prepared, Renderer, Settings};
 use crate::scene::{Features, Scene, gltf};
@@ -34,19 +38,19 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
 
     // Refuse what can be refused before any work is done.
     let outputs = Outputs::check(args)?;
-    let library = shaders::library(args.shaders.as_deref())?;
+    let library = shaders::library(args.shaders.as_deref())?.with_cache(Cache::from_env());
     settings::check_early(args, &library)?;
 
     // From files to buffers and a kernel on the device.
-    let scene = timed(&mut time.load, || load(args, &mut warnings))?;
-    let mut settings = settings::of(args, &scene)?;
-    let device = timed(&mut time.device, || open_device(args))?;
-    let options = BuildOptions::default();
+    let ((scene, mut settings), device) = load_and_open(args, &mut time, &mut warnings)?;
+    settings.doublewords = stage("probe", || device.prefers_doublewords(library.cache()))?;
+    let options = BuildOptions::of(args.bvh);
     let prepared = timed(&mut time.accel, || {
         Prepared::new(&scene, settings.camera, &options)
     })?;
     warn_of_scene(&scene, &prepared, args, &mut warnings);
-    let gpu_scene = timed(&mut time.upload, || GpuScene::upload(&device, &prepared))?;
+    let upload = || stage("upload", || GpuScene::upload(&device, &prepared));
+    let gpu_scene = timed(&mut time.upload, upload)?;
     let stage = Stage {
         device: &device,
         library: &library,
@@ -76,6 +80,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     // From the picture to files.
     let mut report = Report::new(args, &scene, &settings, device.info());
     report.seconds = time;
+    report.bvh = BvhReport::new(args.bvh, &prepared);
     report.add_film(&film, &renderer.progress(), args.stats, &mut warnings);
     report.interrupted = interrupt.requested();
     report.device_bytes = device.peak_bytes_in_use();
@@ -120,9 +125,26 @@ fn write(
     written.errors
 }
 
+/// Reads the scene while the device is opened. If both fail, it is the scene's error that counts.
+fn load_and_open(
+    args: &RenderArgs,
+    time: &mut Seconds,
+    warnings: &mut Warnings,
+) -> Result<((Scene, Settings), Device)> {
+    std::thread::scope(|scope| {
+        let device = &mut time.device;
+        let opening = scope.spawn(|| timed(device, || open_device(args)));
+        let scene = timed(&mut time.load, || load(args, warnings));
+        let scene = scene.and_then(|scene| Ok((settings::of(args, &scene)?, scene)));
+        let scene = scene.map(|(settings, scene)| (scene, settings));
+        let device = opening.join().unwrap_or_else(|panic| resume_unwind(panic));
+        Ok((scene?, device?))
+    })
+}
+
 fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
     // The environment first: it is read faster, so a mistake in it is found sooner.
-    let environment = environment::load(args, warnings)?;
+    let environment = stage("environment", || environment::load(args, warnings))?;
     let options = gltf::LoadOptions {
         scene: args.scene.clone(),
     };
@@ -130,7 +152,7 @@ fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
     if environment.is_some() {
         scene.environment = environment;
     }
-    let valid = scene.validate();
+    let valid = stage("validate", || scene.validate());
     valid.with_context(|| args.file.display().to_string())?;
     Ok(scene)
 }
@@ -142,7 +164,10 @@ fn open_device(args: &RenderArgs) -> Result<Device> {
             .filter(|s| !s.is_empty())
     };
     let selector = args.device.clone().or_else(from_variable);
-    Ok(Device::open(selector.as_deref())?)
+    let device = Device::open(selector.as_deref())?;
+    // Measured here, beside the loading; the device remembers.
+    stage("probe", || device.probe())?;
+    Ok(device)
 }
 
 fn warn_of_scene(scene: &Scene, prepared: &Prepared, args: &RenderArgs, warnings: &mut Warnings) {

@@ -5,8 +5,10 @@ use std::time::Instant;
 use serde::{Serialize, Serializer};
 
 use super::args::RenderArgs;
+use super::bvh_report::BvhReport;
 use super::message::Warnings;
 use crate::gpu::DeviceInfo;
+use crate::host::stages::{Startup, startup};
 use crate::render::{Film, Progress, Settings};
 use crate::scene::Scene;
 
@@ -41,6 +43,8 @@ pub struct Report {
     pub max_depth: u32,
     /// Wall time by phase.
     pub seconds: Seconds,
+    /// Where the time goes until the first samples are finished.
+    pub startup: Startup,
     /// Samples per second of the render phase.
     pub paths_per_second: f64,
     /// With `--stats` only.
@@ -51,6 +55,8 @@ pub struct Report {
     pub rays_per_second: Option<f64>,
     /// Of all instances.
     pub triangles: u64,
+    /// The acceleration structure.
+    pub bvh: BvhReport,
     /// Most bytes of device memory held at once.
     pub device_bytes: u64,
     /// Mean over the picture, W·sr⁻¹·m⁻², linear Rec. 709.
@@ -67,7 +73,7 @@ pub struct Report {
     pub warnings: Vec<String>,
 }
 
-/// Wall time of each phase, seconds.
+/// Wall time of each phase, seconds. The device is opened while the scene is read.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Seconds {
     /// Reading the scene and the environment.
@@ -153,6 +159,7 @@ impl Report {
     ) {
         self.spp = Spp(film.samples() as f64 / film.pixels.len() as f64);
         self.seconds.render = progress.elapsed.as_secs_f64();
+        self.startup = startup();
         self.paths_per_second = progress.paths_per_second;
         self.mean_radiance = film.mean_radiance();
         self.relative_error = film.relative_error();

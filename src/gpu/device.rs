@@ -19,6 +19,8 @@ use super::queue::{Queue, Timing};
 use super::select::select;
 use super::transfer;
 use super::validation::ValidationLog;
+use crate::host::Cache;
+use crate::host::stages::stage;
 
 /// An open device. Clones are the same device; threads that share it take turns.
 #[derive(Clone)]
@@ -44,15 +46,13 @@ impl Device {
     /// # Errors
     /// As [`Device::open`].
     pub fn open_with(selector: Option<&str>, options: OpenOptions) -> Result<Self, GpuError> {
-        let instance = Instance::new(options.validation)?;
-        let mut candidates = instance.candidates()?;
+        let instance = stage("instance", || Instance::new(options.validation))?;
+        let mut candidates = stage("devices", || instance.candidates())?;
         let infos: Vec<_> = candidates.iter().map(|found| &found.info).collect();
         let chosen = select(&infos, selector)?;
-        let logical = Arc::new(Logical::new(
-            instance,
-            candidates.swap_remove(chosen),
-            options.staging,
-        )?);
+        let candidate = candidates.swap_remove(chosen);
+        let create = || Logical::new(instance, candidate, options.staging);
+        let logical = Arc::new(stage("device", create)?);
         let queue = Arc::new(Mutex::new(Queue::new(&logical)?));
         Ok(Self { logical, queue })
     }
@@ -94,6 +94,15 @@ impl Device {
         }
         let measured = probe::run(self)?;
         Ok(*self.logical.probe.get_or_init(|| measured))
+    }
+
+    /// Whether its shaders read scattered memory faster in 64-bit integers than in words: measured, and
+    /// kept in `cache` for the next time.
+    ///
+    /// # Errors
+    /// Any of the calls for the measurement.
+    pub fn prefers_doublewords(&self, cache: &Cache) -> Result<bool, GpuError> {
+        probe::loads::prefers_doublewords(self, cache)
     }
 
     /// Makes a buffer of `bytes` bytes (16 for 0), filled with zeros.

@@ -146,30 +146,46 @@ fn require_validation(entry: &Entry) -> Result<(), GpuError> {
         let missing = "VK_LAYER_KHRONOS_validation";
         return Err(GpuError::NoValidation { missing });
     }
-    if !has_extension(entry, Some(VALIDATION_LAYER), ash::ext::debug_utils::NAME)? {
+    if !has_layer_extension(entry, ash::ext::debug_utils::NAME)? {
         let missing = "VK_EXT_debug_utils";
         return Err(GpuError::NoValidation { missing });
     }
     Ok(())
 }
 
-fn has_extension(entry: &Entry, layer: Option<&CStr>, name: &CStr) -> Result<bool, GpuError> {
+fn has_layer_extension(entry: &Entry, name: &CStr) -> Result<bool, GpuError> {
     // SAFETY: the loader is open, and the layer's name is a C string of a layer that it listed.
-    let all = unsafe { entry.enumerate_instance_extension_properties(layer) };
+    let all = unsafe { entry.enumerate_instance_extension_properties(Some(VALIDATION_LAYER)) };
     let all = all.map_err(|e| GpuError::vulkan("list the instance extensions", e))?;
     Ok(all
         .iter()
         .any(|have| have.extension_name_as_c_str() == Ok(name)))
 }
 
-/// Creates the instance: validation when there is a log, and drivers such as MoltenVK included.
+/// Creates the instance: validation when there is a log, and drivers such as MoltenVK included where the loader
+/// knows how. Asking it beforehand would make it load every driver of the machine twice.
 fn create(entry: &Entry, log: Option<&ValidationLog>) -> Result<ash::Instance, GpuError> {
+    let made = match try_create(entry, log, true)? {
+        Err(vk::Result::ERROR_EXTENSION_NOT_PRESENT) => try_create(entry, log, false)?,
+        other => other,
+    };
+    match made {
+        Err(vk::Result::ERROR_INCOMPATIBLE_DRIVER) => Err(GpuError::NoDriver),
+        other => other.map_err(|e| GpuError::vulkan("create an instance", e)),
+    }
+}
+
+fn try_create(
+    entry: &Entry,
+    log: Option<&ValidationLog>,
+    portability: bool,
+) -> Result<Result<ash::Instance, vk::Result>, GpuError> {
     let application = vk::ApplicationInfo::default()
         .application_name(c"etendue")
         .api_version(vk::API_VERSION_1_3);
     let (mut extensions, mut layers) = (Vec::new(), Vec::new());
     let mut info = vk::InstanceCreateInfo::default().application_info(&application);
-    if has_extension(entry, None, ash::khr::portability_enumeration::NAME)? {
+    if portability {
         extensions.push(ash::khr::portability_enumeration::NAME.as_ptr());
         info = info.flags(vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR);
     }
@@ -180,11 +196,7 @@ fn create(entry: &Entry, log: Option<&ValidationLog>) -> Result<ash::Instance, G
         extensions.push(ash::ext::debug_utils::NAME.as_ptr());
         layers.push(VALIDATION_LAYER.as_ptr());
         info = info.push_next(&mut messenger);
-        if has_extension(
-            entry,
-            Some(VALIDATION_LAYER),
-            ash::ext::validation_features::NAME,
-        )? {
+        if has_layer_extension(entry, ash::ext::validation_features::NAME)? {
             extensions.push(ash::ext::validation_features::NAME.as_ptr());
             info = info.push_next(&mut features);
         }
@@ -193,8 +205,5 @@ fn create(entry: &Entry, log: Option<&ValidationLog>) -> Result<ash::Instance, G
         .enabled_extension_names(&extensions)
         .enabled_layer_names(&layers);
     // SAFETY: `info` points to the locals above, which live until the call returns.
-    match unsafe { entry.create_instance(&info, None) } {
-        Err(vk::Result::ERROR_INCOMPATIBLE_DRIVER) => Err(GpuError::NoDriver),
-        other => other.map_err(|e| GpuError::vulkan("create an instance", e)),
-    }
+    Ok(unsafe { entry.create_instance(&info, None) })
 }

@@ -61,6 +61,24 @@ unsafe impl Send for RawBuffer {}
 // SAFETY: as above: `write` and `read` ask for the locked queue, and the device is idle while it is locked.
 unsafe impl Sync for RawBuffer {}
 
+/// Fewest bytes that are worth a thread.
+const SHARE: usize = 8 << 20;
+
+/// Copies; much of it in several threads, since memory that is touched for the first time costs more than the copy.
+/// (Threads of their own: the queue is locked, and a task that rayon runs meanwhile might ask for it.)
+fn copy(target: &mut [u8], data: &[u8]) {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let share = data.len().div_ceil(threads).max(SHARE);
+    if data.len() <= share {
+        return target.copy_from_slice(data);
+    }
+    std::thread::scope(|scope| {
+        for (target, data) in target.chunks_mut(share).zip(data.chunks(share)) {
+            scope.spawn(|| target.copy_from_slice(data));
+        }
+    });
+}
+
 impl RawBuffer {
     /// Makes a buffer. Its content is undefined.
     pub fn new(
@@ -187,12 +205,13 @@ impl RawBuffer {
         else {
             return debug_assert!(false, "write outside a mapped buffer");
         };
-        // SAFETY: the range lies inside the mapped memory, and nobody else uses it while the queue is locked;
+        // SAFETY: the range lies inside the mapped memory, whose bytes are all valid as they are the driver's, and
+        // nobody else uses it while the queue is locked;
         // `data` cannot overlap it, since no reference into mapped memory is ever handed out.
-        unsafe {
-            let target = address.as_ptr().add(offset as usize);
-            target.copy_from_nonoverlapping(data.as_ptr(), data.len());
-        }
+        let target = unsafe {
+            std::slice::from_raw_parts_mut(address.as_ptr().add(offset as usize), data.len())
+        };
+        copy(target, data);
     }
 
     /// Reads from a readable buffer; the caller has checked the range. `_lock` proves that the device is idle.
@@ -295,4 +314,19 @@ fn choose_type(logical: &Logical, allowed: u32, purpose: Purpose) -> Option<u32>
     };
     let find = |wish: &Flags| (0..types.len()).find(|&index| fits(index, *wish));
     wishes.iter().find_map(find).map(|index| index as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SHARE, copy};
+
+    #[test]
+    fn every_byte_is_copied_whatever_the_number_of_threads() {
+        for length in [0, 1, SHARE, SHARE + 1, 5 * SHARE + 7] {
+            let data: Vec<u8> = (0..length).map(|i| (i * 31 + i / 255) as u8).collect();
+            let mut target = vec![0; length];
+            copy(&mut target, &data);
+            assert!(target == data, "{length} bytes");
+        }
+    }
 }

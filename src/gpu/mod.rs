@@ -35,6 +35,7 @@ mod queue;
 mod select;
 mod transfer;
 mod validation;
+mod vectors;
 
 pub use bind::{BindGroup, Bound};
 pub use device::Device;
@@ -47,3 +48,4 @@ pub use pipeline::{BindingKind, Pipeline};
 pub use probe::Probe;
 pub use queue::Timing;
 pub use validation::ValidationLog;
+pub use vectors::prefer_widest_vectors;

@@ -39,6 +39,12 @@ pub enum RenderError {
         /// How many there may be.
         limit: u64,
     },
+    /// The shader uses 64-bit integers.
+    #[error("the shader uses 64-bit integers (u64 or i64), which {device} does not have")]
+    NoInt64 {
+        /// The device's name.
+        device: String,
+    },
     /// One path needs more loop iterations than the driver allows.
     #[error(
         "a path needs more than {limit} loop iterations, at which {driver} silently ends loops: \

@@ -6,7 +6,9 @@
 use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::layout::{MATERIAL_INDEX_MASK, TRIANGLE_ALPHA, TRIANGLE_FLAT, TRIANGLE_SINGLE_SIDED, TRIANGLE_TANGENTS};
+use super::layout::{
+    MATERIAL_INDEX_MASK, TRIANGLE_ALPHA, TRIANGLE_FLAT, TRIANGLE_SINGLE_SIDED, TRIANGLE_TANGENTS,
+};
 use super::vertex_format::VertexFormat;
 use crate::accel::Placed;
 use crate::scene::{AlphaMode, Instance, Material, Mesh, Scene};

@@ -49,14 +49,15 @@ impl GpuScene {
             .collect()
     }
 
-    /// The generated `buffers.wgsl`.
-    pub fn buffers_wgsl(&self) -> String {
+    /// The generated `buffers.wgsl`; with `doublewords` it reads the acceleration structure in 64-bit
+    /// integers, which the device must have.
+    pub fn buffers_wgsl(&self, doublewords: bool) -> String {
         let mut binding = FIRST_PAGED_BINDING;
         let mut text = String::from(
             "// Generated: large arrays, split over pages where the device asks for it.\n",
         );
         for buffer in &self.paged {
-            text += &buffer.wgsl(binding);
+            text += &buffer.wgsl(binding, doublewords);
             binding += buffer.pages().len() as u32;
         }
         text

@@ -72,10 +72,14 @@ impl PagedBuffer {
         self.bytes
     }
 
-    /// The text that declares the pages from `first_binding` on, and the accessor.
-    pub fn wgsl(&self, first_binding: u32) -> String {
+    /// The text that declares the pages from `first_binding` on, and the accessor. Elements of the
+    /// acceleration structure may be read in `doublewords`.
+    pub fn wgsl(&self, first_binding: u32, doublewords: bool) -> String {
         let (name, element, accessor) = LARGE_ARRAYS[self.array];
         let pages = self.pages.len();
+        if doublewords && self.array == 0 {
+            return doublewords_wgsl(pages, self.page_bits, first_binding);
+        }
         paged_wgsl(
             name,
             element,
@@ -96,9 +100,6 @@ fn paged_wgsl(
     page_bits: u32,
     first_binding: u32,
 ) -> String {
-    if element == "Element" && std::env::var_os("X64").is_some() {
-        return qwords_wgsl(name, accessor, pages, page_bits, first_binding);
-    }
     let mut text = String::new();
     for page in 0..pages {
         let binding = first_binding + page as u32;
@@ -121,33 +122,31 @@ fn paged_wgsl(
     text + "}\n"
 }
 
-fn qwords_wgsl(name: &str, accessor: &str, pages: usize, page_bits: u32, first_binding: u32) -> String {
+/// Bindings and accessor of an array of [`Element`](crate::accel::Element)s that are read in double
+/// words, where a device is faster so.
+fn doublewords_wgsl(pages: usize, page_bits: u32, first_binding: u32) -> String {
+    let (name, _, accessor) = LARGE_ARRAYS[0];
     let mut text = String::new();
     for page in 0..pages {
         let binding = first_binding + page as u32;
         text += &format!(
-            "@group(0) @binding({binding}) var<storage, read> {name}_{page}: array<u64>;\n"
+            "@group(0) @binding({binding}) var<storage, read> {name}_{page}: array<u64>;\n\
+             fn {accessor}_{page}(first: u32) -> Element {{\n"
         );
-        text += &format!("fn {accessor}_{page}(first: u32) -> Element {{\n");
         for i in 0..8 {
             text += &format!("    let q{i} = {name}_{page}[first + {i}u];\n");
         }
-        text += "    return Element(";
-        for (i, name) in ["a", "b", "c", "d"].iter().enumerate() {
-            let (p, q) = (2 * i, 2 * i + 1);
-            let _ = name;
-            text += &format!(
-                "vec4u(u32(q{p}), u32(q{p} >> 32u), u32(q{q}), u32(q{q} >> 32u)), "
-            );
-        }
-        text += ");\n}\n";
+        let word = |i| format!("u32(q{i}), u32(q{i} >> 32u)");
+        let vector = |i| format!("vec4u({}, {})", word(2 * i), word(2 * i + 1));
+        let vectors = [0, 1, 2, 3].map(vector).join(",\n        ");
+        text += &format!("    return Element(\n        {vectors},\n    );\n}}\n");
     }
-    text += &format!("fn {accessor}(index: u32) -> Element {{\n");
     let mask = (1_u64 << page_bits) - 1;
-    text += &format!("    let first = (index & {mask}u) * 8u;\n    switch (index >> {page_bits}u) {{\n");
+    text += &format!("fn {accessor}(index: u32) -> Element {{\n");
+    text += &format!("    let first = 8u * (index & {mask}u);\n");
+    text += &format!("    switch (index >> {page_bits}u) {{\n");
     for page in 1..pages {
         text += &format!("        case {page}u: {{ return {accessor}_{page}(first); }}\n");
     }
-    text += &format!("        default: {{ return {accessor}_0(first); }}\n    }}\n}}\n");
-    text
+    text + &format!("        default: {{ return {accessor}_0(first); }}\n    }}\n}}\n")
 }

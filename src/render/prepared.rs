@@ -1,6 +1,8 @@
 //! A scene made ready for the device: flat, sorted by the BVH, its lights in a table. No device yet.
 
-use glam::{DVec3, Vec2};
+use std::time::{Duration, Instant};
+
+use glam::{DVec3, Vec2, Vec3};
 
 use super::emission::triangle_power;
 use super::environment::EnvironmentTable;
@@ -12,6 +14,7 @@ use super::materials::materials;
 use super::textures::TextureSet;
 use super::vertex_format::{VertexFormat, VertexNeeds};
 use crate::accel::{BuildOptions, Bvh, Placed};
+use crate::host::stages::stage;
 use crate::scene::{Features, LightKind, PunctualLight, Scene};
 
 /// Most triangles that the BVH can count.
@@ -30,6 +33,8 @@ pub struct Prepared {
     pub origin: DVec3,
     /// The acceleration structure.
     pub bvh: Bvh,
+    /// Wall time of its build.
+    pub bvh_time: Duration,
     /// Whether any of its triangles is in the table of lights.
     pub has_light_triangles: bool,
     /// Vertex indices of each triangle.
@@ -70,8 +75,12 @@ impl Prepared {
             colors: features.colors,
         });
         let origin = scene.cameras[camera].to_world.w_axis.truncate();
-        let mut flat = FlatGeometry::new(scene, &vertex_format, origin);
-        let mut bvh = Bvh::build(&flat.triangles, options);
+        let flatten = || FlatGeometry::new(scene, &vertex_format, origin);
+        let mut flat = stage("flatten", flatten);
+        let start = Instant::now();
+        let options = options_for(&flat.triangles, options);
+        let mut bvh = stage("bvh", || Bvh::build(&flat.triangles, &options));
+        let bvh_time = start.elapsed();
         flat.reorder(&bvh.order);
         let mut textures = TextureSet::default();
         let materials = materials(scene, &mut textures);
@@ -86,6 +95,7 @@ impl Prepared {
             features,
             origin,
             bvh,
+            bvh_time,
             has_light_triangles: triangle_lights.iter().any(|&light| light != NONE),
             warnings: warnings(flat.dropped, lost),
             indices: flat.indices,
@@ -99,6 +109,29 @@ impl Prepared {
             environment_light,
         })
     }
+}
+
+/// A list puts hits in order by distances that are found quickly, good to about 2^-22 of a triangle's
+/// size over its aspect ratio and the sine of the angle at which it is seen: slivers need the tree.
+fn options_for(triangles: &[[Vec3; 3]], options: &BuildOptions) -> BuildOptions {
+    let may_be_list = triangles.len() <= 2 * options.list_limit;
+    let list_limit = if may_be_list && triangles.iter().any(is_sliver) {
+        0
+    } else {
+        options.list_limit
+    };
+    BuildOptions {
+        list_limit,
+        ..*options
+    }
+}
+
+/// Whether a triangle is more than about a hundred times as long as it is wide.
+fn is_sliver(triangle: &[Vec3; 3]) -> bool {
+    let [a, b, c] = triangle.map(|v| v.as_dvec3());
+    let longest = [b - a, c - b, a - c].map(|e| e.length_squared());
+    let longest = longest.into_iter().fold(0.0, f64::max);
+    (b - a).cross(c - a).length() <= 0.01 * longest
 }
 
 fn check_counts(scene: &Scene) -> Result<(), RenderError> {

@@ -7,9 +7,10 @@ use super::list_wgsl::list_wgsl;
 use super::prepared::Prepared;
 use super::settings::Settings;
 use crate::accel::Bvh;
+use crate::host::stages::stage;
 use crate::scene::Features;
 use crate::shader::{
-    CompileOptions, Compiled, Composed, ShaderLibrary, VirtualFiles, compile, compose,
+    CompileOptions, Compiled, Composed, ShaderLibrary, VirtualFiles, compile_or_recall, compose,
 };
 
 /// The file that holds the entry point.
@@ -26,7 +27,7 @@ pub fn build(
     virtuals: &VirtualFiles,
     settings: &Settings,
 ) -> Result<(Composed, Compiled), RenderError> {
-    let composed = compose(library, virtuals, ENTRY_FILE)?;
+    let composed = stage("compose", || compose(library, virtuals, ENTRY_FILE))?;
     let options = CompileOptions {
         entry_point: ENTRY_POINT,
         checked: settings.checked,
@@ -34,7 +35,8 @@ pub fn build(
         layouts: &layouts(),
         debug_names: false,
     };
-    let compiled = compile(&composed, &options)?;
+    let recall = || compile_or_recall(&composed, &options, library.cache());
+    let compiled = stage("spirv", recall)?;
     Ok((composed, compiled))
 }
 
@@ -52,7 +54,10 @@ pub fn virtual_files(
     let mut files = choice_files(library, settings)?;
     let constants = constants(scene, settings, count_steps);
     files.insert("features.wgsl".into(), features_wgsl(&constants));
-    files.insert("buffers.wgsl".into(), gpu_scene.buffers_wgsl());
+    files.insert(
+        "buffers.wgsl".into(),
+        gpu_scene.buffers_wgsl(settings.doublewords),
+    );
     files.extend(accel_files(&scene.bvh));
     Ok(files)
 }

@@ -13,6 +13,7 @@ use super::prepared::Prepared;
 use super::program;
 use super::settings::Settings;
 use crate::gpu::{BindGroup, BindingKind, Buffer, Device, Pipeline};
+use crate::host::stages::stage;
 use crate::scene::Scene;
 use crate::shader::{self, Diagnostic, OverrideInfo, ShaderLibrary};
 
@@ -86,22 +87,28 @@ impl<'a> Renderer<'a> {
     ) -> Result<Self, RenderError> {
         settings.check()?;
         let start = Instant::now();
-        let loop_limit = device.probe()?.loop_limit;
+        let loop_limit = stage("probe", || device.probe())?.loop_limit;
         let virtuals =
             program::virtual_files(library, settings, prepared, gpu_scene, loop_limit.is_some())?;
         let (composed, compiled) = program::build(library, &virtuals, settings)?;
+        if compiled.uses_int64() && !device.info().int64 {
+            let device = device.info().name.clone();
+            return Err(RenderError::NoInt64 { device });
+        }
         let kinds: Vec<(u32, BindingKind)> = compiled
             .bindings
             .iter()
             .map(|b| (b.binding, binding_kind(b.kind)))
             .collect();
-        let pipeline = device.pipeline(
-            &settings.integrator,
-            &compiled.spirv,
-            &compiled.entry_point,
-            &kinds,
-            compiled.workgroup_size,
-        )?;
+        let pipeline = stage("pipeline", || {
+            device.pipeline(
+                &settings.integrator,
+                &compiled.spirv,
+                &compiled.entry_point,
+                &kinds,
+                compiled.workgroup_size,
+            )
+        })?;
         let mut renderer = Self {
             device,
             settings: settings.clone(),
@@ -120,8 +127,10 @@ impl<'a> Renderer<'a> {
             rate: 0.0,
         };
         let used: Vec<u32> = kinds.iter().map(|k| k.0).collect();
-        renderer.bind_bands(scene, prepared, gpu_scene, &used)?;
-        renderer.warm_up()?;
+        stage("film", || {
+            renderer.bind_bands(scene, prepared, gpu_scene, &used)
+        })?;
+        stage("driver", || renderer.warm_up())?;
         renderer.compile_time = start.elapsed();
         Ok(renderer)
     }

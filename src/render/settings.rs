@@ -36,6 +36,10 @@ pub struct Settings {
     /// Samples a pixel in a pass over the picture, instead of as many as take about 500 ms. No bit
     /// of the picture depends on it.
     pub pass_samples: Option<u64>,
+    /// Read the acceleration structure in 64-bit integers, which the device must have
+    /// ([`Device::prefers_doublewords`](crate::gpu::Device::prefers_doublewords)). No bit of the picture
+    /// depends on it.
+    pub doublewords: bool,
 }
 
 impl Default for Settings {
@@ -55,6 +59,7 @@ impl Default for Settings {
             stats: false,
             piece_tiles: None,
             pass_samples: None,
+            doublewords: false,
         }
     }
 }

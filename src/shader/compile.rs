@@ -12,7 +12,7 @@ use super::layout::{self, StructLayout};
 use super::naga_report::Reporter;
 use super::overrides::{self, OverrideInfo};
 use super::reflect::{self, Binding};
-use super::{ShaderError, exact, guard, naga_options, no_contraction, spirv};
+use super::{ShaderError, dead_branches, exact, guard, naga_options, no_contraction, spirv};
 
 /// How to compile.
 #[derive(Debug, Clone, Copy)]
@@ -58,6 +58,20 @@ pub struct Compiled {
     pub warnings: Vec<Diagnostic>,
 }
 
+impl Compiled {
+    /// Whether the device must have 64-bit integers.
+    pub fn uses_int64(&self) -> bool {
+        // OpCapability Int64; capabilities come first, after a header of five words.
+        const CAPABILITY: u32 = 2 << 16 | 17;
+        const INT64: u32 = 11;
+        let instructions = self.spirv.get(5..).unwrap_or_default();
+        let mut capabilities = instructions
+            .chunks_exact(2)
+            .take_while(|w| w[0] == CAPABILITY);
+        capabilities.any(|w| w[1] == INT64)
+    }
+}
+
 /// Compiles the entry point of a composed shader.
 ///
 /// # Errors
@@ -82,23 +96,29 @@ fn compile_unguarded(
     layout::check(&module, options.layouts, report)?;
     overrides::check(&module, options.overrides, report)?;
 
-    // Keep what the entry point uses, with every override resolved.
+    // Keep what the entry point uses, with every override resolved and without dead branches.
     let reduced = reduce(&module, options.entry_point, report)?;
     let info = validate(&reduced, report)?;
     let constants = overrides::constants(&reduced, options.overrides, report)?;
-    let (resolved, info) = process_overrides(&reduced, &info, None, &constants)
+    let (resolved, _) = process_overrides(&reduced, &info, None, &constants)
         .map_err(|e| override_error(&e, report))?;
 
+    let warnings = exact::warnings(&resolved, report);
+    let mut live = resolved.into_owned();
+    dead_branches::remove(&mut live);
+    compact(&mut live, KeepUnused::No);
+    let info = validate(&live, report)?;
+
     Ok(Compiled {
-        spirv: write(&resolved, &info, options, report)?,
+        spirv: write(&live, &info, options, report)?,
         entry_point: options.entry_point.to_owned(),
-        workgroup_size: resolved
+        workgroup_size: live
             .entry_points
             .first()
             .map_or([1; 3], |e| e.workgroup_size),
-        bindings: reflect::bindings(&resolved, report)?,
+        bindings: reflect::bindings(&live, report)?,
         overrides: overrides::list(&module),
-        warnings: exact::warnings(&resolved, report),
+        warnings,
     })
 }
 

@@ -8,6 +8,7 @@ use include_dir::{Dir, include_dir};
 
 use super::ShaderError;
 use super::path;
+use crate::host::Cache;
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 
@@ -21,6 +22,7 @@ const MAX_ENTRIES: usize = 20_000;
 pub struct ShaderLibrary {
     files: BTreeMap<String, String>,
     origin: Origin,
+    cache: Cache,
 }
 
 #[derive(Debug, Clone)]
@@ -38,6 +40,7 @@ impl ShaderLibrary {
         Self {
             files,
             origin: Origin::Embedded,
+            cache: Cache::off(),
         }
     }
 
@@ -57,6 +60,7 @@ impl ShaderLibrary {
         Ok(Self {
             files: reader.files,
             origin: Origin::Folder(reader.root),
+            cache: Cache::off(),
         })
     }
 
@@ -68,7 +72,18 @@ impl ShaderLibrary {
         Self {
             files: files.map(|(p, t)| (p.into(), t.into())).collect(),
             origin: Origin::Memory,
+            cache: Cache::off(),
         }
+    }
+
+    /// The same files; what is compiled of them is kept in `cache`.
+    pub fn with_cache(self, cache: Cache) -> Self {
+        Self { cache, ..self }
+    }
+
+    /// Where compiled shaders are kept: nowhere, unless [`Self::with_cache`] says so.
+    pub fn cache(&self) -> &Cache {
+        &self.cache
     }
 
     /// The text of the file at `path`.

@@ -5,10 +5,10 @@ use naga::back::spv;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// What a shader may use beyond core WGSL, fixed so that a shader that compiles here compiles for
-/// every device: subgroup operations (in Vulkan 1.1; the device says which) and half floats packed
-/// in u32. No f64, i64, f16, float atomics or textures: not every Vulkan device has them, or the
-/// `gpu` layer does not bind them.
+/// What a shader may use beyond core WGSL: subgroup operations (in Vulkan 1.1; the device says which),
+/// half floats packed in u32, and 64-bit integers, which [`Compiled::uses_int64`](super::Compiled)
+/// tells, since not every device has them. No f64, f16, float atomics or textures: fewer devices
+/// have them, or the `gpu` layer does not bind them.
 pub const CAPABILITIES: Capabilities = Capabilities::SUBGROUP
     .union(Capabilities::SHADER_INT64)
     .union(Capabilities::SUBGROUP_BARRIER)

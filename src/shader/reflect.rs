@@ -1,12 +1,14 @@
 //! What an entry point binds.
 
+use serde::{Deserialize, Serialize};
+
 use naga::{AddressSpace, GlobalVariable, Handle, Module, StorageAccess, Type, TypeInner};
 
 use super::ShaderError;
 use super::naga_report::Reporter;
 
 /// A buffer that an entry point uses.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Binding {
     /// Descriptor set.
     pub group: u32,
@@ -21,7 +23,7 @@ pub struct Binding {
 }
 
 /// How a buffer is bound.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum BindingKind {
     /// A storage buffer that the shader only reads.
     StorageRead,

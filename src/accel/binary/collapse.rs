@@ -72,8 +72,14 @@ fn area_scale(root: &BinaryNode) -> f64 {
 struct Choices(u32);
 
 impl Choices {
+    const ONE_EACH: Choices = Choices(0o1_111_111);
+
     fn set(&mut self, roots: usize, left: usize) {
         self.0 |= (left as u32) << (3 * (roots - 2));
+    }
+
+    fn clear(&mut self, roots: usize) {
+        self.0 &= !(7 << (3 * (roots - 2)));
     }
 
     fn left(self, roots: usize) -> usize {
@@ -101,6 +107,14 @@ impl Subtree<'_> {
         if node.is_leaf() {
             return [0.0; WIDTH - 1];
         }
+        let area = (node.bounds.half_area() * self.scale) as f32;
+        if node.leaves == 2 {
+            // One leaf to each child, unless it has to be a wide node of its own.
+            *self.own = Choices::ONE_EACH;
+            let mut costs = [0.0; WIDTH - 1];
+            costs[0] = area;
+            return costs;
+        }
         let first = node.index as usize;
         let (children, below) = self.below.split_at_mut(2);
         let (left_own, right_own) = children.split_at_mut(1);
@@ -121,50 +135,34 @@ impl Subtree<'_> {
         } else {
             (left.solve(), right.solve())
         };
-        let right_leaves = node.leaves as usize - left_leaves;
-        let area = (node.bounds.half_area() * scale) as f32;
-        combine(area, [left, right], [left_leaves, right_leaves], self.own)
+        combine(area, &[left, right], self.own)
     }
 }
 
 /// The costs of a node from those of its children, and how to reach them.
-fn combine(area: f32, children: [Costs; 2], leaves: [usize; 2], choices: &mut Choices) -> Costs {
-    let mut costs = [f32::INFINITY; WIDTH - 1];
-    let most = WIDTH.min(leaves[0] + leaves[1]);
-    let mut shared_out = f32::INFINITY;
-    for roots in 2..=most {
-        let (cost, left) = share_out(roots, &children, leaves);
-        // More roots never cost more; a tie goes to opening the node: fewer wide nodes.
-        if roots < WIDTH {
-            costs[roots - 1] = cost;
+fn combine(area: f32, [left, right]: &[Costs; 2], choices: &mut Choices) -> Costs {
+    let mut costs = [0.0; WIDTH - 1];
+    for roots in 2..=WIDTH {
+        let mut best = (f32::INFINITY, 0);
+        for k in 1..roots {
+            let cost = left[k - 1] + right[roots - k - 1];
+            best = if cost < best.0 { (cost, k) } else { best };
         }
-        shared_out = cost;
-        choices.set(roots, left);
+        if roots == WIDTH {
+            // As a wide node of its own.
+            costs[0] = area + best.0;
+        } else {
+            costs[roots - 1] = best.0;
+        }
+        choices.set(roots, best.1);
     }
-    // As a wide node of its own.
-    costs[0] = area + shared_out;
     for roots in 2..WIDTH {
-        let fewer = costs[roots - 2];
-        if fewer < costs[roots - 1] {
-            costs[roots - 1] = fewer;
-            choices.0 &= !(7 << (3 * (roots - 2)));
+        if costs[roots - 2] < costs[roots - 1] {
+            costs[roots - 1] = costs[roots - 2];
+            choices.clear(roots);
         }
     }
     costs
-}
-
-/// The least cost with this many roots in both children together, and how many are in the left.
-fn share_out(roots: usize, [left, right]: &[Costs; 2], leaves: [usize; 2]) -> (f32, usize) {
-    let least = roots.saturating_sub(leaves[1].min(WIDTH - 1)).max(1);
-    let most = (roots - 1).min(leaves[0].min(WIDTH - 1));
-    let mut best = (f32::INFINITY, least);
-    for k in least..=most {
-        let cost = left[k - 1] + right[roots - k - 1];
-        if cost < best.0 {
-            best = (cost, k);
-        }
-    }
-    best
 }
 
 /// Follows the choices down from the root.

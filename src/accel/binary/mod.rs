@@ -3,6 +3,13 @@
 mod boxes;
 mod check;
 mod collapse;
+mod layout;
+mod morton;
+mod place_search;
+mod ploc;
+mod radix;
+mod range;
+mod reinsert;
 mod sah;
 mod sweep;
 
@@ -11,6 +18,8 @@ pub use collapse::{WIDTH, WideChildren, WideTopology};
 
 use super::primitive::Primitive;
 use crate::geometry::Aabb;
+use std::fmt;
+use std::str::FromStr;
 
 /// Most inner nodes on a way from the root to a leaf, in any tree of [`BinaryTree::build`].
 pub const MAX_BINARY_DEPTH: u32 = 64;
@@ -18,13 +27,44 @@ pub const MAX_BINARY_DEPTH: u32 = 64;
 /// How much time a build may take for a better tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Preset {
-    /// The shortest build.
+    /// The shortest build: neighbours along a space-filling curve are merged, and the largest
+    /// subtrees are reinserted where they fit better.
     Fast,
-    /// A good tree in little time.
+    /// A better tree in about twice the time: the surface area heuristic over bins instead.
     #[default]
     Balanced,
-    /// The best tree, for long renders.
+    /// The best tree in about ten times as long: starts from that of [`Preset::Balanced`], which it
+    /// only improves, and reinserts all subtrees until that gains little.
     Best,
+}
+
+impl Preset {
+    /// All of them, the fastest first.
+    pub const ALL: [Preset; 3] = [Preset::Fast, Preset::Balanced, Preset::Best];
+
+    /// Its name: `fast`, `balanced` or `best`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Preset::Fast => "fast",
+            Preset::Balanced => "balanced",
+            Preset::Best => "best",
+        }
+    }
+}
+
+impl fmt::Display for Preset {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Preset {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Preset, String> {
+        let found = Preset::ALL.into_iter().find(|preset| preset.name() == name);
+        found.ok_or_else(|| format!("expected fast, balanced or best, not \"{name}\""))
+    }
 }
 
 /// A node of a [`BinaryTree`]. 32 bytes.
@@ -66,13 +106,29 @@ pub struct BinaryTree {
 }
 
 impl BinaryTree {
-    /// Builds a tree over boxes that are finite and not empty; at most 2³¹ of them.
+    /// Builds a tree over boxes that are finite and not empty; at most [`super::MAX_TRIANGLES`],
+    /// which the caller checks, and no index is larger than that.
     ///
     /// Parallel. The same boxes in the same order give the same tree, bit for bit, whatever the
     /// number of threads.
     pub fn build(primitives: &[Primitive], preset: Preset) -> BinaryTree {
-        let _ = preset;
-        sah::build(primitives)
+        if primitives.is_empty() {
+            return BinaryTree {
+                nodes: vec![],
+                depth: 0,
+            };
+        }
+        let scale = range::scale(primitives);
+        let mut nodes = match preset {
+            Preset::Fast => ploc::build(morton::sorted_leaves(primitives, scale)),
+            Preset::Balanced | Preset::Best => sah::build(range::leaves(primitives, scale)),
+        };
+        reinsert::improve(&mut nodes, preset);
+        let mut tree = layout::place(&nodes);
+        if scale != 1.0 {
+            range::restore(&mut tree, primitives);
+        }
+        tree
     }
 
     /// Σ of the half areas of all inner nodes over that of the root: the inner nodes that a random

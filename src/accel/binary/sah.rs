@@ -1,14 +1,19 @@
 //! Top-down: the surface area heuristic over bins of centroids on all three axes (Wald, *On fast
 //! Construction of SAH-based Bounding Volume Hierarchies*, 2007), exact where few boxes are left.
 
-use super::super::primitive::{Primitive, fold_slices};
-use super::boxes::{Box4, Item, bounds, items};
+use super::super::primitive::fold_slices;
+use super::MAX_BINARY_DEPTH;
+use super::boxes::{Box4, Node4, bounds, void};
+use super::ploc::levels_of_even_splits;
 use super::sweep::{self, MAX_SWEEP};
-use super::{BinaryNode, BinaryTree, MAX_BINARY_DEPTH};
 use glam::Vec4;
 
 /// Most bins an axis.
 const BINS: usize = 16;
+
+/// Fewer boxes than this get [`FEW_BINS`].
+const FEW: usize = 32;
+const FEW_BINS: usize = 8;
 
 /// Fewer boxes than this are built by one thread.
 const PARALLEL_LIMIT: usize = 2048;
@@ -16,15 +21,8 @@ const PARALLEL_LIMIT: usize = 2048;
 /// 2²³: the sum with a number from 0 to 2²² holds that number, rounded, in its low bits.
 const TO_INTEGER: f32 = 8_388_608.0;
 
-pub(super) fn build(primitives: &[Primitive]) -> BinaryTree {
-    let mut items = items(primitives);
-    if items.is_empty() {
-        return BinaryTree {
-            nodes: vec![],
-            depth: 0,
-        };
-    }
-    let mut nodes = vec![BinaryNode::VOID; 2 * items.len() - 1];
+pub(super) fn build(mut items: Vec<Node4>) -> Vec<Node4> {
+    let mut nodes = void(2 * items.len() - 1);
     let (root, below) = nodes.split_at_mut(1);
     let [bounds, _] = bounds(&items);
     let task = Task {
@@ -34,18 +32,18 @@ pub(super) fn build(primitives: &[Primitive]) -> BinaryTree {
         first: 1,
         level: 0,
     };
-    let depth = task.build(&mut root[0]);
-    BinaryTree { nodes, depth }
+    task.build(&mut root[0]);
+    nodes
 }
 
 /// A subtree to build.
 struct Task<'a> {
     /// What it holds, at least one.
-    items: &'a mut [Item],
+    items: &'a mut [Node4],
     /// Their bounds.
     bounds: Box4,
     /// Room for the nodes below its root: 2 (n - 1).
-    below: &'a mut [BinaryNode],
+    below: &'a mut [Node4],
     /// Index of the first of these.
     first: u32,
     /// Inner nodes above its root.
@@ -55,18 +53,14 @@ struct Task<'a> {
 impl Task<'_> {
     /// Writes its root and what is below; gives the inner nodes on the longest way to a leaf,
     /// from the root of all.
-    fn build(self, root: &mut BinaryNode) -> u32 {
+    fn build(self, root: &mut Node4) {
         let n = self.items.len();
         if n == 1 {
-            *root = self.items[0].leaf();
-            return self.level;
+            *root = self.items[0];
+            return;
         }
-        *root = BinaryNode {
-            bounds: self.bounds.aabb(),
-            index: self.first,
-            leaves: n as u32,
-        };
-        let (middle, bounds) = divide(self.items, self.bounds, self.level);
+        *root = Node4::new(self.bounds, self.first, n as u32);
+        let (middle, bounds) = divide(self.items, self.level);
         let (left_items, right_items) = self.items.split_at_mut(middle);
         let (roots, below) = self.below.split_at_mut(2);
         let (left_root, right_root) = roots.split_at_mut(1);
@@ -85,30 +79,28 @@ impl Task<'_> {
             first: self.first + 2 * middle as u32,
             level: self.level + 1,
         };
-        let (a, b) = if n > PARALLEL_LIMIT {
+        if n > PARALLEL_LIMIT {
             rayon::join(
                 || left.build(&mut left_root[0]),
                 || right.build(&mut right_root[0]),
-            )
+            );
         } else {
-            (
-                left.build(&mut left_root[0]),
-                right.build(&mut right_root[0]),
-            )
-        };
-        a.max(b)
+            left.build(&mut left_root[0]);
+            right.build(&mut right_root[0]);
+        }
     }
 }
 
 /// Reorders at least two items; gives the number that goes left, and the bounds of both sides.
-fn divide(items: &mut [Item], own: Box4, level: u32) -> (usize, [Box4; 2]) {
+fn divide(items: &mut [Node4], level: u32) -> (usize, [Box4; 2]) {
     let is_too_deep = level + levels_of_even_splits(items.len()) >= MAX_BINARY_DEPTH;
     if items.len() <= MAX_SWEEP && !is_too_deep {
-        return sweep::divide(items, own);
+        return sweep::divide(items);
     }
     let [_, centroids] = bounds(items);
-    let binning = Binning::new(centroids, BINS.min(items.len()));
-    let split = best_split(items, &binning, own.area_scale()).filter(|_| !is_too_deep);
+    let bins = if items.len() < FEW { FEW_BINS } else { BINS };
+    let binning = Binning::new(centroids, bins);
+    let split = best_split(items, &binning).filter(|_| !is_too_deep);
     let Some(split) = split else {
         return divide_evenly(items, centroids);
     };
@@ -116,11 +108,6 @@ fn divide(items: &mut [Item], own: Box4, level: u32) -> (usize, [Box4; 2]) {
         binning.bins_of(item)[split.axis] < split.bin as u32
     });
     (middle, split.bounds)
-}
-
-/// Levels that n items need when each node halves them: ⌈log₂ n⌉.
-fn levels_of_even_splits(n: usize) -> u32 {
-    usize::BITS - (n - 1).leading_zeros()
 }
 
 /// Maps centroids to bins: monotone in each coordinate.
@@ -132,15 +119,14 @@ struct Binning {
 
 impl Binning {
     fn new(centroids: Box4, bins: usize) -> Binning {
-        let half_size = centroids.half_size();
-        let scale = |half: f32| {
-            if half > 0.0 {
-                (0.5 * bins as f32 / half).min(f32::MAX)
+        let scale = |size: f32| {
+            if size > 0.0 {
+                (bins as f32 / size).min(f32::MAX)
             } else {
                 0.0
             }
         };
-        let [x, y, z, _] = half_size.to_array();
+        let [x, y, z, _] = centroids.size().to_array();
         let scale = Vec4::new(scale(x), scale(y), scale(z), 0.0);
         Binning {
             scale,
@@ -151,7 +137,7 @@ impl Binning {
     }
 
     /// The bins of an item on all axes.
-    fn bins_of(&self, item: &Item) -> [u32; 3] {
+    fn bins_of(&self, item: &Node4) -> [u32; 3] {
         let x = item.centroid() * self.scale - self.offset;
         let x = x.max(Vec4::ZERO).min(Vec4::splat((self.bins - 1) as f32));
         let [x, y, z, _] = (x + TO_INTEGER).to_array();
@@ -182,7 +168,7 @@ impl Bin {
 
 type Histogram = [[Bin; BINS]; 3];
 
-/// Items in bins below `bin` go left.
+/// Node4s in bins below `bin` go left.
 struct Split {
     axis: usize,
     bin: usize,
@@ -192,8 +178,8 @@ struct Split {
 }
 
 /// None where all centroids share a bin on each axis.
-fn best_split(items: &[Item], binning: &Binning, area_scale: f32) -> Option<Split> {
-    let add = |histogram: &mut Histogram, item: &Item| {
+fn best_split(items: &[Node4], binning: &Binning) -> Option<Split> {
+    let add = |histogram: &mut Histogram, item: &Node4| {
         let bins = binning.bins_of(item);
         for (bin, side) in bins.into_iter().zip(histogram) {
             let bin = &mut side[bin as usize];
@@ -211,14 +197,14 @@ fn best_split(items: &[Item], binning: &Binning, area_scale: f32) -> Option<Spli
     let mut best = None;
     for (axis, bins) in histogram.iter().enumerate() {
         if binning.scale[axis] > 0.0 {
-            sweep_bins(&bins[..binning.bins], axis, area_scale, &mut best);
+            sweep_bins(&bins[..binning.bins], axis, &mut best);
         }
     }
     best
 }
 
 /// From the right to know all right sides, then from the left.
-fn sweep_bins(bins: &[Bin], axis: usize, area_scale: f32, best: &mut Option<Split>) {
+fn sweep_bins(bins: &[Bin], axis: usize, best: &mut Option<Split>) {
     let mut right_sides = [Bin::EMPTY; BINS];
     let mut right = Bin::EMPTY;
     for i in (1..bins.len()).rev() {
@@ -232,7 +218,7 @@ fn sweep_bins(bins: &[Bin], axis: usize, area_scale: f32, best: &mut Option<Spli
         if left.count == 0 || right.count == 0 {
             continue;
         }
-        let cost = |side: Bin| side.bounds.scaled_area(area_scale) * side.count as f32;
+        let cost = |side: Bin| side.bounds.area() * side.count as f32;
         let key = (cost(left) + cost(right), left.count.abs_diff(right.count));
         if best.as_ref().is_none_or(|best| key < best.key) {
             let bounds = [left.bounds, right.bounds];
@@ -249,8 +235,8 @@ fn sweep_bins(bins: &[Bin], axis: usize, area_scale: f32, best: &mut Option<Spli
 
 /// Halves the items about the median on the longest axis of their centroids; equal centroids are
 /// told apart by index, so a million coincident boxes are halved too.
-fn divide_evenly(items: &mut [Item], centroids: Box4) -> (usize, [Box4; 2]) {
-    let axis = centroids.half_size().truncate().max_position();
+fn divide_evenly(items: &mut [Node4], centroids: Box4) -> (usize, [Box4; 2]) {
+    let axis = centroids.size().truncate().max_position();
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {
         let (x, y) = (a.centroid()[axis], b.centroid()[axis]);
@@ -260,16 +246,13 @@ fn divide_evenly(items: &mut [Item], centroids: Box4) -> (usize, [Box4; 2]) {
     (middle, [bounds(left)[0], bounds(right)[0]])
 }
 
-/// Moves the items that belong left to the front, in place; gives their number.
-fn partition(items: &mut [Item], is_left: impl Fn(&Item) -> bool) -> usize {
-    let (mut i, mut j) = (0, items.len());
-    while i < j {
-        if is_left(&items[i]) {
-            i += 1;
-        } else {
-            j -= 1;
-            items.swap(i, j);
-        }
+/// Moves the items that belong left to the front, in place; gives their number. No branch depends on
+/// the data.
+fn partition(items: &mut [Node4], is_left: impl Fn(&Node4) -> bool) -> usize {
+    let mut middle = 0;
+    for i in 0..items.len() {
+        items.swap(i, middle);
+        middle += usize::from(is_left(&items[middle]));
     }
-    i
+    middle
 }

@@ -1,18 +1,25 @@
-//! The probe's shader, compiled here because `gpu` needs it before any layer above has a shader.
+//! The probes' shaders, compiled here because `gpu` needs them before any layer above has a shader.
 
+use naga::ShaderStage;
 use naga::back::spv;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use crate::gpu::GpuError;
 
-/// The SPIR-V of `probe.wgsl`, in the version of Vulkan 1.1.
+/// The SPIR-V of `probe.wgsl`.
 pub(super) fn spirv() -> Result<Vec<u32>, GpuError> {
+    compile(include_str!("probe.wgsl"), "main")
+}
+
+/// The SPIR-V of one entry point, in the version of Vulkan 1.1.
+pub(super) fn compile(text: &str, entry: &str) -> Result<Vec<u32>, GpuError> {
     let failed = |error: &dyn std::error::Error| GpuError::Probe {
         reason: format!("its shader does not compile: {error}"),
     };
-    let text = include_str!("probe.wgsl");
-    let module = naga::front::wgsl::parse_str(text).map_err(|e| failed(&e))?;
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let mut module = naga::front::wgsl::parse_str(text).map_err(|e| failed(&e))?;
+    module.entry_points.retain(|e| e.name == entry);
+    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::SHADER_INT64);
     let info = validator.validate(&module).map_err(|e| failed(&e))?;
     let options = spv::Options {
         lang_version: (1, 3),
@@ -20,5 +27,9 @@ pub(super) fn spirv() -> Result<Vec<u32>, GpuError> {
         force_loop_bounding: false,
         ..spv::Options::default()
     };
-    spv::write_vec(&module, &info, &options, None).map_err(|e| failed(&e))
+    let pipeline = spv::PipelineOptions {
+        shader_stage: ShaderStage::Compute,
+        entry_point: entry.to_owned(),
+    };
+    spv::write_vec(&module, &info, &options, Some(&pipeline)).map_err(|e| failed(&e))
 }

@@ -1,6 +1,7 @@
 //! What the driver does that no property tells: measured by a tiny kernel.
 
 mod kernel;
+pub(super) mod loads;
 
 use bytemuck::{Pod, Zeroable};
 use serde::Serialize;

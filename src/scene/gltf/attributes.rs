@@ -1,8 +1,11 @@
 //! Vertex attributes: which are kept, and what makes them fit for the shader.
 
+use bytemuck::allocation::try_cast_vec;
 use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
 
 use super::accessor::{Component, Shape};
+use super::elements::PARALLEL;
 use super::error::LoadError;
 use super::material::NORMAL;
 use super::primitive::{Primitive, Window};
@@ -27,7 +30,8 @@ fn positions(primitive: &mut Primitive, window: Window) -> Result<Vec<Vec3>, Loa
         return Ok(Vec::new());
     };
     let positions: Vec<Vec3> = floats::<3, _>(accessor.floats(primitive.source.data, window)?);
-    let broken = positions.iter().filter(|p| !p.is_finite()).count();
+    let parts = positions.par_iter().with_min_len(PARALLEL);
+    let broken = parts.filter(|p| !p.is_finite()).count();
     if broken > 0 {
         primitive.warn(&format!(
             "{broken} of its positions are not finite; triangles that use them are skipped"
@@ -37,8 +41,11 @@ fn positions(primitive: &mut Primitive, window: Window) -> Result<Vec<Vec3>, Loa
 }
 
 /// A vector of glam's from an array, without a copy of the allocation where the layouts agree.
-fn floats<const N: usize, V: From<[f32; N]>>(raw: Vec<[f32; N]>) -> Vec<V> {
-    raw.into_iter().map(V::from).collect()
+fn floats<const N: usize, V: From<[f32; N]> + bytemuck::Pod>(raw: Vec<[f32; N]>) -> Vec<V>
+where
+    [f32; N]: bytemuck::Pod,
+{
+    try_cast_vec(raw).unwrap_or_else(|(_, raw)| raw.into_iter().map(V::from).collect())
 }
 
 fn normals(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Result<(), LoadError> {
@@ -47,13 +54,15 @@ fn normals(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Result
     };
     accessor.expect_shape("NORMAL", &[Shape::Vec3])?;
     mesh.normals = floats(accessor.floats::<3>(primitive.source.data, window)?);
-    let mut broken = Vec::new();
-    for (vertex, normal) in mesh.normals.iter_mut().enumerate() {
-        match unit(*normal) {
-            Some(unit) => *normal = unit,
-            None => broken.push(vertex),
+    let normalized = |(vertex, normal): (usize, &mut Vec3)| match unit(*normal) {
+        Some(unit) => {
+            *normal = unit;
+            None
         }
-    }
+        None => Some(vertex),
+    };
+    let parts = mesh.normals.par_iter_mut().with_min_len(PARALLEL);
+    let broken: Vec<usize> = parts.enumerate().filter_map(normalized).collect();
     if !broken.is_empty() {
         primitive.warn(&format!(
             "{} of its normals have no direction; the triangles' own are used there",
@@ -169,13 +178,14 @@ fn tex_coords(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Res
 }
 
 /// Replace the values that are not `good`, and count them.
-fn replace<T: Copy>(values: &mut [T], good: impl Fn(&T) -> bool, other: T) -> usize {
-    let mut replaced = 0;
-    for value in values.iter_mut().filter(|value| !good(value)) {
-        *value = other;
-        replaced += 1;
-    }
-    replaced
+fn replace<T: Copy + Send + Sync>(
+    values: &mut [T],
+    good: impl Fn(&T) -> bool + Sync,
+    other: T,
+) -> usize {
+    let parts = values.par_iter_mut().with_min_len(PARALLEL);
+    let bad = parts.filter(|value| !good(value));
+    bad.map(|value| *value = other).count()
 }
 
 fn colors(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Result<(), LoadError> {

@@ -9,7 +9,7 @@ use super::buffer::Data;
 use super::error::LoadError;
 
 /// Fewest elements that are worth a thread of their own.
-const PARALLEL: usize = 1 << 15;
+pub(super) const PARALLEL: usize = 1 << 15;
 
 impl Accessor<'_> {
     /// Refuse an accessor of another shape; `role` says what it is used for.
@@ -68,6 +68,38 @@ impl Accessor<'_> {
                 .item
                 .fault("indices must be unsigned integers (`componentType` 5121, 5123 or 5125)")),
         }
+    }
+
+    /// The elements of an accessor of vertex indices, three at a time and without a copy in between: none where
+    /// they do not lie one after the other, or are no multiple of three.
+    pub fn index_triples(&self, data: &Data) -> Result<Option<Vec<[u32; 3]>>, LoadError> {
+        let size = self.component.size();
+        let tight = self.block.filter(|block| block.stride == size);
+        let plain = self.sparse.is_none() && self.count.is_multiple_of(3);
+        let (Some(block), true, Shape::Scalar) = (tight, plain, self.shape) else {
+            return Ok(None);
+        };
+        let triples = match self.component {
+            Component::U8 => self.triples(data, block, |[b]| u32::from(b)),
+            Component::U16 => self.triples(data, block, |b| u32::from(u16::from_le_bytes(b))),
+            Component::U32 => self.triples(data, block, u32::from_le_bytes),
+            _ => return Ok(None),
+        };
+        triples.map(Some)
+    }
+
+    fn triples<const SIZE: usize>(
+        &self,
+        data: &Data,
+        block: Block,
+        decode: impl Fn([u8; SIZE]) -> u32 + Sync,
+    ) -> Result<Vec<[u32; 3]>, LoadError> {
+        let count = self.count / 3;
+        self.claim::<u32, 3>(data, count)?;
+        let bytes = &data.view(block.view)?[block.offset..];
+        let triple = |index: usize| decode_element(bytes, 3 * SIZE * index, &decode);
+        let all = (0..count).into_par_iter().with_min_len(PARALLEL);
+        Ok(all.map(triple).collect())
     }
 
     fn gather<T: Copy + Default + Send + Sync, const N: usize, const SIZE: usize>(

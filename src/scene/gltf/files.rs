@@ -6,6 +6,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::error::LoadError;
 use super::json::{Item, shorten};
 use super::uri::{self, Target};
@@ -22,7 +24,7 @@ impl Files {
     /// A reader that has already read the scene file itself.
     pub fn new(scene_file: &[u8]) -> Self {
         let mut hasher = blake3::Hasher::new();
-        hasher.update(scene_file);
+        hasher.update_rayon(scene_file);
         Self {
             hasher,
             read: HashMap::new(),
@@ -39,12 +41,12 @@ impl Files {
         if let Some(bytes) = self.read.get(&path) {
             return Ok(Arc::clone(bytes));
         }
-        let bytes = fs::read(&path).map_err(|source| LoadError::Read {
+        let bytes = read_whole(&path).map_err(|source| LoadError::Read {
             path: item.file().to_owned(),
             object: format!("{} (file {:?})", item.label(), shorten(uri)),
             source,
         })?;
-        self.hasher.update(&bytes);
+        self.hasher.update_rayon(&bytes);
         self.bytes += bytes.len() as u64;
         let bytes = Arc::new(bytes);
         self.read.insert(path, Arc::clone(&bytes));
@@ -75,5 +77,60 @@ pub(super) fn read_scene(path: &Path) -> Result<Vec<u8>, LoadError> {
             "it is a folder; name the .gltf or .glb file in it",
         )));
     }
-    fs::read(path).map_err(read_error)
+    read_whole(path).map_err(read_error)
+}
+
+/// Bytes of a file that a thread reads at a time.
+const PIECE: usize = 8 << 20;
+
+/// Reads a file into memory. (A map of it would save the copy, but a file that another process changes or cuts
+/// off meanwhile would then be undefined behaviour.)
+#[cfg(unix)]
+fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
+    use std::os::unix::fs::FileExt;
+    let file = fs::File::open(path)?;
+    let about = file.metadata()?;
+    if !about.is_file() || about.len() <= 2 * PIECE as u64 {
+        return fs::read(path);
+    }
+    let length = usize::try_from(about.len()).map_err(|_| io::ErrorKind::OutOfMemory)?;
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(length)?;
+    bytes.resize(length, 0);
+    // Most of the time goes into making the memory, not into copying: several threads do both.
+    let pieces = bytes.par_chunks_mut(PIECE).enumerate();
+    pieces.try_for_each(|(piece, bytes)| file.read_exact_at(bytes, (piece * PIECE) as u64))?;
+    Ok(bytes)
+}
+
+#[cfg(not(unix))]
+fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
+    fs::read(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_files_are_read_as_small_ones_are() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("file");
+        for length in [
+            0,
+            1,
+            2 * PIECE,
+            2 * PIECE + 1,
+            3 * PIECE,
+            3 * PIECE + 12_345,
+        ] {
+            let content: Vec<u8> = (0..length).map(|i| (i * 7 + i / 251) as u8).collect();
+            fs::write(&path, &content).expect("written");
+            assert!(
+                read_whole(&path).expect("read") == content,
+                "{length} bytes"
+            );
+        }
+        assert!(read_whole(&folder.path().join("none")).is_err());
+    }
 }

@@ -14,6 +14,7 @@ use super::node::{Nodes, Placed};
 use super::primitive::Source;
 use super::texture::{self, Textures};
 use super::{LoadOptions, accessor, camera, extensions, framing, light, meshes, pose};
+use crate::host::stages::stage;
 use crate::scene::{Material, Scene, TextureSlot};
 
 /// Load the chosen scene of a parsed file.
@@ -59,7 +60,7 @@ fn load_content(
     binary: Option<&[u8]>,
     scene: &mut Scene,
 ) -> Result<(), LoadError> {
-    let data = Data::load(root, files, binary)?;
+    let data = stage("buffers", || Data::load(root, files, binary))?;
     let accessors = accessor::read_all(root, &data)?;
     let mut materials = material::read_all(root, &mut scene.warnings)?;
     materials.push(default_material());
@@ -68,10 +69,14 @@ fn load_content(
         accessors: &accessors,
         materials: &materials,
     };
-    meshes::load(root, nodes, placed, source, scene)?;
+    stage("meshes", || {
+        meshes::load(root, nodes, placed, source, scene)
+    })?;
     let used: BTreeSet<usize> = scene.meshes.iter().map(|mesh| mesh.material).collect();
     let used_materials = used.iter().map(|&index| &materials[index]);
-    let textures = texture::load(root, &data, files, used_materials, &mut scene.warnings)?;
+    let textures = stage("images", || {
+        texture::load(root, &data, files, used_materials, &mut scene.warnings)
+    })?;
     fill_materials(scene, materials, &used, &textures);
     scene.textures = textures.textures;
     scene.images = textures.images;

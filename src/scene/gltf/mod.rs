@@ -38,6 +38,7 @@ use std::path::Path;
 
 use super::Scene;
 use super::selector::Selector;
+use crate::host::stages::stage;
 
 /// What to load from a file.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -51,7 +52,7 @@ pub struct LoadOptions {
 /// # Errors
 /// [`LoadError`]: one sentence that names the file and the object in it.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, LoadError> {
-    let bytes = files::read_scene(path)?;
+    let bytes = stage("read", || files::read_scene(path))?;
     load_slice(path, &bytes, options)
 }
 
@@ -62,7 +63,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, LoadError> {
 /// As [`load`].
 pub fn load_slice(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene, LoadError> {
     let container = container::split(path, bytes)?;
-    let json = container::parse(path, &bytes[container.json])?;
+    let json = stage("parse", || container::parse(path, &bytes[container.json]))?;
     let binary = container.binary.map(|range| &bytes[range]);
     loader::load(path, bytes, &json, binary, options)
 }

@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
 use serde_json::Value;
 
 use super::accessor::{Accessor, Shape};
 use super::attributes;
 use super::buffer::Data;
+use super::elements::PARALLEL;
 use super::error::LoadError;
 use super::json::{Item, counted};
 use super::material::{NORMAL, RawMaterial};
@@ -184,8 +186,14 @@ impl<'a> Primitive<'a> {
         let Some(accessor) = accessor else {
             return self.unindexed(topology, vertices);
         };
+        if topology == Topology::Triangles
+            && let Some(triangles) = accessors[accessor].index_triples(self.source.data)?
+        {
+            self.check_indices(triangles.as_flattened(), vertices, accessor)?;
+            return Ok(triangles);
+        }
         let indices = accessors[accessor].indices(self.source.data)?;
-        self.check_indices(&indices, vertices, accessor)?;
+        self.check_indices(indices.as_flattened(), vertices, accessor)?;
         Ok(topology.triangles(corners, |corner| indices[corner][0]))
     }
 
@@ -198,7 +206,7 @@ impl<'a> Primitive<'a> {
 
     fn check_indices(
         &self,
-        indices: &[[u32; 1]],
+        indices: &[u32],
         vertices: usize,
         accessor: usize,
     ) -> Result<(), LoadError> {
@@ -208,11 +216,16 @@ impl<'a> Primitive<'a> {
             2 => u32::from(u16::MAX),
             _ => u32::MAX,
         };
-        let wrong = |&[index]: &[u32; 1]| index >= limit || index == restart;
-        let Some(position) = indices.iter().position(wrong) else {
+        let wrong = |&index: &u32| index >= limit || index == restart;
+        let first_wrong = |(part, indices): (usize, &[u32])| {
+            let position = indices.iter().position(wrong)?;
+            Some(part * PARALLEL + position)
+        };
+        let parts = indices.par_chunks(PARALLEL).enumerate();
+        let Some(position) = parts.find_map_first(first_wrong) else {
             return Ok(());
         };
-        let index = indices[position][0];
+        let index = indices[position];
         let reason = match index == restart {
             true => "the primitive restart value, which glTF does not allow".to_owned(),
             false => format!(

@@ -2,6 +2,11 @@
 //!
 //! Exporters let many primitives share one long list of vertices; each must not drag all of it along.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use super::elements::PARALLEL;
 use super::primitive::Window;
 use crate::scene::Mesh;
 
@@ -9,34 +14,33 @@ use crate::scene::Mesh;
 ///
 /// `triangles` is not empty.
 pub(super) fn window(triangles: &mut [[u32; 3]]) -> Window {
-    let corners = || triangles.iter().flatten().copied();
-    let first = corners().min().unwrap_or(0);
-    let last = corners().max().unwrap_or(0);
+    let wider = |(low, high): (u32, u32), &[a, b, c]: &[u32; 3]| {
+        (low.min(a).min(b).min(c), high.max(a).max(b).max(c))
+    };
+    let both = |a: (u32, u32), b: (u32, u32)| (a.0.min(b.0), a.1.max(b.1));
+    let parts = triangles.par_iter().with_min_len(PARALLEL);
+    let (first, last) = parts
+        .fold(|| (u32::MAX, 0), wider)
+        .reduce(|| (u32::MAX, 0), both);
     if first > 0 {
-        for corner in triangles.iter_mut().flatten() {
-            *corner -= first;
-        }
+        let parts = triangles.par_iter_mut().with_min_len(PARALLEL);
+        parts.for_each(|corners| *corners = corners.map(|corner| corner - first));
     }
     first as usize..last as usize + 1
 }
 
 /// Leave out unused vertices where they are more than half of all.
 pub(super) fn drop_unused(mesh: &mut Mesh) {
-    const UNUSED: u32 = u32::MAX;
-    let mut new_index = vec![UNUSED; mesh.positions.len()];
-    for &corner in mesh.indices.iter().flatten() {
-        new_index[corner as usize] = 0;
-    }
-    let used = new_index.iter().filter(|&&index| index != UNUSED).count();
-    if used * 2 > new_index.len() {
+    let is_used = used(mesh);
+    let count = is_used.iter().filter(|used| **used).count();
+    if count * 2 > is_used.len() {
         return;
     }
-    let mut kept = Vec::with_capacity(used);
-    for (old, new) in new_index.iter_mut().enumerate() {
-        if *new != UNUSED {
-            *new = kept.len() as u32;
-            kept.push(old);
-        }
+    let mut new_index = vec![0; is_used.len()];
+    let mut kept = Vec::with_capacity(count);
+    for (old, _) in is_used.iter().enumerate().filter(|(_, used)| **used) {
+        new_index[old] = kept.len() as u32;
+        kept.push(old);
     }
     for corner in mesh.indices.iter_mut().flatten() {
         *corner = new_index[*corner as usize];
@@ -48,6 +52,16 @@ pub(super) fn drop_unused(mesh: &mut Mesh) {
     for set in &mut mesh.tex_coords {
         keep(set, &kept);
     }
+}
+
+/// Which vertices the triangles use.
+fn used(mesh: &Mesh) -> Vec<bool> {
+    let mut used = Vec::new();
+    used.resize_with(mesh.positions.len(), AtomicBool::default);
+    let parts = mesh.indices.as_flattened().par_iter();
+    let parts = parts.with_min_len(PARALLEL);
+    parts.for_each(|&vertex| used[vertex as usize].store(true, Ordering::Relaxed));
+    used.into_iter().map(AtomicBool::into_inner).collect()
 }
 
 fn keep<T: Copy>(values: &mut Vec<T>, kept: &[usize]) {

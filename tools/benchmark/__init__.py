@@ -1,0 +1,1 @@
+"""étendue measured against its peers: see docs/benchmarking.md."""

@@ -1,0 +1,190 @@
+"""The command line."""
+
+import argparse
+import json
+import pathlib
+import sys
+
+from . import assets, builder, compare, gpu, peer_etendue, places, scaling, scene_writer, tables
+from .places import BenchError
+
+
+def positive(text):
+    """A whole number from 1 on."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not 1 or more")
+    return value
+
+
+def several(text):
+    """A whole number from 2 on: one picture has no spread."""
+    value = positive(text)
+    if value < 2:
+        raise argparse.ArgumentTypeError(f"{text} is not 2 or more")
+    return value
+
+
+def parser():
+    top = argparse.ArgumentParser(
+        prog="tools/bench",
+        description="Measures étendue against its peers.",
+        epilog="Also: tools/bench scaling, tools/bench gpu, tools/bench bvh; each has --help.",
+    )
+    top.add_argument(
+        "--scenes", default="", help=f"comma-separated: {', '.join(scene_writer.NAMES)} (default: all that can be had)"
+    )
+    top.add_argument("--peers", default="mitsuba,cycles", help="comma-separated: %(default)s")
+    top.add_argument("--rounds", type=positive, default=5, help="interleaved rounds (default %(default)s)")
+    top.add_argument("--spp", type=positive, default=16, help="samples a pixel of a timed render (default %(default)s)")
+    top.add_argument("--size", type=positive, default=512, help="width and height (default %(default)s)")
+    top.add_argument("--batches", type=several, default=8, help="pictures of the agreement check (default %(default)s)")
+    top.add_argument("--batch-spp", type=positive, default=16, help="samples a pixel of each (default %(default)s)")
+    top.add_argument(
+        "--threads", type=positive, default=places.threads(), help="for everyone (default: all, %(default)s)"
+    )
+    top.add_argument("--quick", action="store_true", help="3 rounds of 4 samples at 256x256: tries the machinery out")
+    add_device(top)
+    return top
+
+
+def add_device(top):
+    device = top.add_mutually_exclusive_group()
+    device.add_argument("--driver", default="newest", help="newest, system, or a Debian suite for tools/lavapipe")
+    device.add_argument("--gpu", action="store_true", help="whatever the system's Vulkan gives")
+    top.add_argument("--etendue", help="use this program instead of building it")
+    top.add_argument("--json", type=pathlib.Path, metavar="FILE")
+    top.add_argument("--markdown", type=pathlib.Path, metavar="FILE")
+
+
+def command_of(options):
+    """étendue with what has to stand before it."""
+    driver = "system" if options.gpu else options.driver
+    return [*peer_etendue.runner(driver), str(peer_etendue.program(options.etendue))]
+
+
+def settings_of(options):
+    s = compare.Settings(
+        command_of(options),
+        options.size,
+        8,
+        options.spp,
+        options.rounds,
+        options.batches,
+        options.batch_spp,
+        options.threads,
+    )
+    if options.quick:
+        s.size, s.rounds, s.spp, s.batches, s.batch_spp = 256, 3, 4, 8, 8
+    return s
+
+
+def compare_all(options):
+    settings = settings_of(options)
+    report = {
+        "settings": {k: v for k, v in vars(settings).items() if k != "etendue"},
+        "rows": [],
+        "driver": "",
+        "peers": [],
+    }
+    report["left_out"] = [] if options.scenes or places.shared_assets() else list(assets.NAMES)
+    everything = [name for name in scene_writer.NAMES if name not in report["left_out"]]
+    for scene in split(options.scenes, scene_writer.NAMES, "--scenes") or everything:
+        for peer in split(options.peers, compare.PEERS, "--peers"):
+            row = compare.measure(settings, scene, peer)
+            report["rows"].append(row)
+            report["driver"] = row.get("etendue", {}).get("driver", report["driver"])
+            version = row.get("other", {}).get("version", peer)
+            report["peers"] += [] if version in report["peers"] else [version]
+            write(options, report, tables.comparison(report))
+    print(tables.comparison(report))
+    return 1 if any("error" in row for row in report["rows"]) else 0
+
+
+def split(text, known, flag):
+    names = [name for name in text.split(",") if name]
+    for name in names:
+        if name not in known:
+            raise BenchError(f"{flag}: there is no {name!r}; there are {', '.join(known)}")
+    return names
+
+
+def write(options, report, markdown):
+    """After each row, so that an interrupted run leaves what it has."""
+    if options.json:
+        options.json.write_text(json.dumps(report, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    if options.markdown:
+        options.markdown.write_text(markdown, encoding="utf-8")
+
+
+def measure_scaling(arguments):
+    top = argparse.ArgumentParser(prog="tools/bench scaling", description="Time against the size of the problem.")
+    top.add_argument("--rounds", type=positive, default=3)
+    top.add_argument("--threads", type=positive, default=places.threads())
+    top.add_argument("--triangles", type=positive, default=10**7, help="the most (default %(default)s)")
+    top.add_argument(
+        "--samples", type=positive, default=1, help="multiplies the samples of all points (default %(default)s)"
+    )
+    top.add_argument("--svg", type=pathlib.Path, metavar="FILE", help="a plot")
+    add_device(top)
+    options = top.parse_args(arguments)
+    rows = scaling.measure(command_of(options), options.threads, options.rounds, options.triangles, options.samples)
+    table = scaling.markdown(
+        rows, f"étendue, {options.threads} threads, medians of {options.rounds} interleaved rounds."
+    )
+    if options.svg:
+        options.svg.write_text(scaling.svg(rows), encoding="utf-8")
+    return finish(options, rows, table)
+
+
+def measure_gpu(arguments):
+    top = argparse.ArgumentParser(prog="tools/bench gpu", description="Rays per second at 1080p.")
+    top.add_argument("--scenes", default="cornell,spheres-360k,spheres-2m,spheres-8m")
+    top.add_argument("--rounds", type=positive, default=5)
+    top.add_argument("--spp", type=positive, default=64)
+    top.add_argument("--threads", type=positive, default=places.threads())
+    add_device(top)
+    options = top.parse_args(arguments)
+    scenes = split(options.scenes, scene_writer.NAMES, "--scenes")
+    rows = gpu.measure(command_of(options), options.threads, scenes, options.rounds, options.spp)
+    return finish(options, rows, gpu.markdown(rows, options.rounds, options.spp))
+
+
+def measure_bvh(arguments):
+    top = argparse.ArgumentParser(prog="tools/bench bvh", description="The builder's presets.")
+    top.add_argument("--scenes", default="spheres-360k,spheres-2m,spheres-8m")
+    top.add_argument("--rounds", type=positive, default=5)
+    top.add_argument("--spp", type=positive, default=4)
+    top.add_argument("--size", type=positive, default=512)
+    top.add_argument("--threads", type=positive, default=places.threads())
+    add_device(top)
+    options = top.parse_args(arguments)
+    scenes = split(options.scenes, scene_writer.NAMES, "--scenes")
+    rows = builder.measure(command_of(options), options.threads, scenes, options.rounds, options.spp, options.size)
+    return finish(options, rows, builder.markdown(rows, options.rounds, options.spp, options.size))
+
+
+def finish(options, report, table):
+    write(options, report, table)
+    print(table)
+    return 0
+
+
+COMMANDS = {"scaling": measure_scaling, "gpu": measure_gpu, "bvh": measure_bvh}
+
+
+def main(arguments):
+    """Exit codes: 0 measured, 1 means disagree, 2 usage, 3 something cannot be installed or run, 130 interrupted."""
+    try:
+        if arguments and arguments[0] in COMMANDS:
+            return COMMANDS[arguments[0]](arguments[1:])
+        return compare_all(parser().parse_args(arguments))
+    except BenchError as error:
+        print(f"bench: {error}", file=sys.stderr)
+        return error.code
+    except KeyboardInterrupt:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,70 @@
+"""étendue, a process a render."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+
+from . import install, places
+from .places import BenchError
+
+
+def program(chosen=None):
+    """The program: that of --etendue, else built here."""
+    if chosen:
+        if not os.access(chosen, os.X_OK):
+            raise BenchError(f"--etendue {chosen}: no such program")
+        return pathlib.Path(chosen).resolve()
+    install.say("building étendue ...")
+    build = ["cargo", "build", "--release", "--locked", "--quiet", "--bin", "etendue"]
+    done = subprocess.run(build, cwd=places.REPOSITORY, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise BenchError(f"cargo could not build étendue:\n{done.stderr}".rstrip(), 3)
+    return places.target() / "release" / "etendue"
+
+
+def runner(driver):
+    """What to put before the program. driver: "newest", "system", or a Debian suite of tools/lavapipe."""
+    if driver == "system":
+        return []
+    suite = "trixie-backports" if driver == "newest" else driver
+    return [str(install.lavapipe_root(suite) / "run")]
+
+
+class Etendue:
+    """Renders one scene. Scene loading, build and compilation are repeated each time and timed apart."""
+
+    name = "etendue"
+
+    def __init__(self, command, scene, threads):
+        self.command, self.scene = command, scene
+        self.environment = os.environ | {"LP_NUM_THREADS": str(threads), "RAYON_NUM_THREADS": str(threads)}
+        self.about = {}
+
+    def render(self, spp, seed, size, output=None, max_depth=8, **more):
+        """more: flags of `etendue render`, with _ for -. Returns the --json report with seconds at the top."""
+        width, height = size if isinstance(size, tuple) else (size, size)
+        flags = {"spp": spp, "seed": seed, "size": f"{width}x{height}", "max_depth": max_depth, **more}
+        environment = self.scene.parent / "environment.exr"
+        if environment.exists():
+            flags.setdefault("env", environment)
+        with tempfile.TemporaryDirectory() as folder:
+            report = pathlib.Path(folder) / "report.json"
+            command = [*self.command, "render", str(self.scene), "--quiet", "--json", str(report)]
+            for flag, value in flags.items():
+                command += [f"--{flag.replace('_', '-')}"] + ([] if value is True else [str(value)])
+            command += ["--output", str(output)] if output else []
+            done = subprocess.run(command, env=self.environment, capture_output=True, text=True, check=False)
+            if done.returncode != 0:
+                raise BenchError(f"étendue failed ({done.returncode}): {done.stderr.strip()}", 3)
+            answer = json.loads(report.read_text(encoding="utf-8"))
+        if answer["non_finite_samples"]:
+            raise BenchError(f"étendue drew {answer['non_finite_samples']} samples that are no numbers", 1)
+        phases = answer["seconds"]
+        self.about = {"version": f"étendue {answer['version']}", "driver": answer["driver"], "device": answer["device"]}
+        self.about |= {key: phases[key] for key in ("load", "accel", "upload", "compile")}
+        return {"seconds": phases["render"], "mean": answer["mean_radiance"], "report": answer}
+
+    def close(self):
+        """Nothing is left running."""
