@@ -4,8 +4,11 @@
 //! Hits are put in order by the t of the quick edges, and only the closest is found again to nearly
 //! full precision. The quick t is a mean of the vertices' t with weights of one sign, so it is within
 //! the triangle but for a few u; how exact it is within depends on how the ray sees the triangle, just
-//! as the rounding of its vertices' places does. A closed mesh stays closed: the quick test loses no
-//! hit of the exact one.
+//! as the rounding of its vertices' places does. So a hit where the ray starts may be lost or made.
+//!
+//! A triangle that the ray sees so nearly edge-on that all its quick edges are 0 is missed, which the
+//! exact test may find. Its neighbours at the same place, whose quick test leaves them open there, are
+//! met instead, if they are not all such slivers.
 
 use super::element::Element;
 use super::traverse::{Hit, MISS, Steps};
