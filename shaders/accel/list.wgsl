@@ -70,30 +70,30 @@ fn quick_hit(edges: vec3f, s: Sheared) -> TriangleHit {
   return TriangleHit(exact_depth(edges, s.a, s.b, s.c) / determinant, edges / determinant, determinant < 0.0);
 }
 
-// The closer of a hit and those on the triangles (a, b, c), which is number `id`, and (a, c, d).
+// The closer of a hit and those on the triangles (a, b, c), which is number `id`, and (a, c, d). The
+// flags of both are literals in the generated text: what they rule out is not compiled. No branches:
+// among so many lanes one goes each way.
 fn closer_of_pair(
-  so_far: ListHit, id: u32, ray: Ray, camera_ray: bool, seed: u32, a: vec3f, b: vec3f, c: vec3f, d: vec3f,
+  so_far: ListHit, id: u32, first_flags: u32, second_flags: u32,
+  ray: Ray, camera_ray: bool, seed: u32, a: vec3f, b: vec3f, c: vec3f, d: vec3f,
 ) -> ListHit {
   let fan = sheared_fan(a, b, c, d);
-  var hit = so_far;
-  if (fan.first) {
-    hit = closer(hit, id, quick_hit(fan.first_edges, Sheared(a, b, c)), ray, camera_ray, seed);
-  }
-  if (fan.second) {
-    hit = closer(hit, id + 1u, quick_hit(fan.second_edges, Sheared(a, c, d)), ray, camera_ray, seed);
-  }
-  return hit;
+  let first = quick_hit(fan.first_edges, Sheared(a, b, c));
+  let hit = closer(so_far, fan.first, id, first_flags, first, ray, camera_ray, seed);
+  let second = quick_hit(fan.second_edges, Sheared(a, c, d));
+  return closer(hit, fan.second, id + 1u, second_flags, second, ray, camera_ray, seed);
 }
 
-fn closer(so_far: ListHit, id: u32, hit: TriangleHit, ray: Ray, camera_ray: bool, seed: u32) -> ListHit {
-  let is_closer = hit.t > 0.0 && hit.t < so_far.t;
-  if (!is_closer || id == ray.start || id == ray.end) {
-    return so_far;
-  }
-  if (HAS_ALPHA || HAS_SINGLE_SIDED) {
-    if (!accept_hit(load_triangle(id), hit.b, hit.back_face, camera_ray, seed)) {
-      return so_far;
+fn closer(
+  so_far: ListHit, candidate: bool, id: u32, flags: u32, hit: TriangleHit, ray: Ray, camera_ray: bool, seed: u32,
+) -> ListHit {
+  var is_closer = candidate & (hit.t > 0.0) & (hit.t < so_far.t) & (id != ray.start) & (id != ray.end);
+  if ((flags & TRIANGLE_ALPHA) != 0u) {
+    if (is_closer) {
+      is_closer = accept_hit(load_triangle(id), hit.b, hit.back_face, camera_ray, seed);
     }
+  } else if ((flags & TRIANGLE_SINGLE_SIDED) != 0u) {
+    is_closer &= !(camera_ray & hit.back_face);
   }
-  return ListHit(hit.t, id);
+  return ListHit(select(so_far.t, hit.t, is_closer), select(so_far.triangle, id, is_closer));
 }

@@ -24,6 +24,11 @@ pub const TRIANGLE_TANGENTS: u32 = 1 << 27;
 /// It is in the table of lights.
 pub const TRIANGLE_EMITS: u32 = 1 << 28;
 
+/// The words of a pair's [`Element`] that belong to the renderer: the attributes of its two triangles,
+pub const FIRST_ATTRIBUTES: usize = 13;
+/// and the first light of them.
+pub const FIRST_LIGHT: usize = 15;
+
 /// [`Material::flags`]: both faces emit.
 pub const MATERIAL_DOUBLE_SIDED: u32 = 1;
 /// [`Material::flags`]: alpha is a mask.

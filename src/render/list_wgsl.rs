@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 use std::fmt::Write;
 
+use super::layout::{FIRST_ATTRIBUTES, TRIANGLE_ALPHA, TRIANGLE_SINGLE_SIDED};
 use crate::accel::Element;
 
 /// The `list.wgsl` of a scene: which vertices its pairs share. Positions are not in it, so that the
@@ -17,6 +18,7 @@ pub fn list_wgsl(elements: &[Element]) -> String {
     );
     let mut names: HashMap<[u32; 3], String> = HashMap::new();
     for (i, element) in elements.iter().enumerate() {
+        let flags = |word: usize| element.words[word] & (TRIANGLE_ALPHA | TRIANGLE_SINGLE_SIDED);
         let mut fan = Vec::new();
         for corner in 0..4 {
             let bits = [0, 1, 2].map(|k| element.words[3 * corner + k]);
@@ -32,8 +34,10 @@ pub fn list_wgsl(elements: &[Element]) -> String {
         }
         let _ = writeln!(
             text,
-            "    hit = closer_of_pair(hit, {}u, ray, camera_ray, seed, {});",
+            "    hit = closer_of_pair(hit, {}u, {:#x}u, {:#x}u, ray, camera_ray, seed, {});",
             2 * i,
+            flags(FIRST_ATTRIBUTES),
+            flags(FIRST_ATTRIBUTES + 1),
             fan.join(", ")
         );
     }

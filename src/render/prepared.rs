@@ -8,7 +8,7 @@ use super::emission::triangle_power;
 use super::environment::EnvironmentTable;
 use super::error::RenderError;
 use super::flatten::FlatGeometry;
-use super::layout::{self, NONE};
+use super::layout::{self, FIRST_ATTRIBUTES, FIRST_LIGHT, NONE};
 use super::lights::{LightList, punctual};
 use super::materials::materials;
 use super::textures::TextureSet;
@@ -19,10 +19,6 @@ use crate::scene::{Features, LightKind, PunctualLight, Scene};
 
 /// Most triangles that the BVH can count.
 const MAX_TRIANGLES: u64 = crate::accel::MAX_TRIANGLES as u64;
-
-/// The owner's words of a pair: the attributes of its triangles, then the first light of them.
-const FIRST_ATTRIBUTES: usize = 13;
-const FIRST_LIGHT: usize = 15;
 
 /// Everything that the device will hold, in its own order and layout.
 #[derive(Debug)]
