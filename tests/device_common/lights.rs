@@ -23,7 +23,9 @@ impl Bench {
     pub fn new(scene: &Scene, point: Vec3, normal: Vec3) -> Self {
         let stage = Stage::new(scene);
         Self {
-            setup: Setup::new().with(stage.constants()),
+            setup: Setup::new()
+                .with(stage.constants())
+                .structure(&stage.prepared.bvh),
             stage,
             point: point.extend(0.0).to_array(),
             normal: normal.normalize().extend(0.0).to_array(),

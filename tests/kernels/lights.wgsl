@@ -2,6 +2,7 @@
 
 #include "math/float.wgsl"
 #include "light.wgsl"
+#include "accel/stack.wgsl"
 
 @group(0) @binding(13) var<uniform> params: vec4u;
 // The point, the shading normal, then directions.
@@ -52,7 +53,8 @@ fn evaluate_environment(@builtin(global_invocation_id) id: vec3u) {
 // Radiance of the triangle that a direction meets, and the density with which light sampling
 // returns the direction, as the path integrator computes it for a hit.
 @compute @workgroup_size(64)
-fn evaluate_triangles(@builtin(global_invocation_id) id: vec3u) {
+fn evaluate_triangles(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
+    stack_lane = lane;
     if (id.x >= params.x) {
         return;
     }
