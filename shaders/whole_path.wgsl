@@ -1,4 +1,4 @@
-// For integrators that find the radiance of a sample in one go:
+// For integrators that find the radiance of a sample in one go. Included where the integrator's file has
 //
 //   fn Li(camera_ray: Ray, sampler: ptr<function, Sampler>) -> vec3f
 

@@ -1,6 +1,5 @@
 // The base colour of the first surface, linear. Zero where the camera sees no surface.
 
-#include "whole_path.wgsl"
 #include "material.wgsl"
 #include "sampler.wgsl"
 

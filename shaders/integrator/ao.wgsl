@@ -1,7 +1,6 @@
 // Ambient occlusion: the cosine-weighted fraction of the hemisphere from which nothing is met
 // within AO_DISTANCE metres. White where the camera sees no surface.
 
-#include "whole_path.wgsl"
 #include "bsdf.wgsl"
 #include "sampler.wgsl"
 

@@ -1,7 +1,6 @@
 // Distance from the camera to the first surface, metres, in all three channels. Zero where the
 // camera sees no surface.
 
-#include "whole_path.wgsl"
 #include "surface.wgsl"
 #include "sampler.wgsl"
 

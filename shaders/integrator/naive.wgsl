@@ -6,7 +6,6 @@
 // (the mirror direction is followed with probability one half where there is one) and punctual
 // lights (all of them are summed).
 
-#include "whole_path.wgsl"
 #include "light.wgsl"
 #include "bsdf.wgsl"
 

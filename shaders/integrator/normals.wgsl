@@ -1,7 +1,6 @@
 // Shading normals in the world, facing the camera; each component in [-1, 1]. Zero where the
 // camera sees no surface.
 
-#include "whole_path.wgsl"
 #include "surface.wgsl"
 #include "sampler.wgsl"
 

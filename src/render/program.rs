@@ -86,7 +86,12 @@ pub fn choice_files(
     library: &ShaderLibrary,
     settings: &Settings,
 ) -> Result<VirtualFiles, RenderError> {
-    let integrator = choose(library, "integrator", &settings.integrator)?;
+    let mut integrator = choose(library, "integrator", &settings.integrator)?;
+    let file = format!("integrator/{}.wgsl", settings.integrator);
+    // An integrator that finds a sample's radiance in one go leaves the steps of a path to us.
+    if library.read(&file)?.contains("fn Li(") {
+        integrator += "#include \"whole_path.wgsl\"\n";
+    }
     let sampler = choose(library, "sampler", &settings.sampler)?;
     Ok(VirtualFiles::from([
         ("integrator.wgsl".into(), integrator),
