@@ -18,18 +18,27 @@ if [ "$1" = devices ]; then cat "$(dirname "$0")/devices"; exit; fi
 case ${ETENDUE_RUNNER:-} in */trixie-backports/run) echo "newest: $*" ;; *) echo "system: $*" ;; esac
 "#;
 
+/// What `ldconfig` prints in its place: more after the loader than a pipe holds.
+const LIBRARIES: &str = "#!/bin/sh
+echo 'libvulkan.so.1 (libc6,x86-64) => /lib/libvulkan.so.1'
+seq 100000
+";
+
 struct Stage {
     folder: tempfile::TempDir,
 }
 
 impl Stage {
-    /// A machine with these devices, on which the newest lavapipe has been fetched.
+    /// A machine with these devices, a Vulkan loader among many libraries, and the newest lavapipe
+    /// fetched.
     fn new(drivers: &[&str]) -> Self {
         let stage = Self {
             folder: tempfile::tempdir().expect("a folder"),
         };
         stage.script("bin/cargo", "#!/bin/sh\n");
         stage.script("bin/cc", "#!/bin/sh\n");
+        stage.script("bin/ldconfig", LIBRARIES);
+        stage.write("data/vulkan/icd.d/lvp_icd.json", "{}");
         stage.script("lavapipe/trixie-backports/run", "#!/bin/sh\nexit 9\n");
         stage.write("lavapipe/trixie-backports/version", "26.1.6-1\n");
         stage.script("target/release/etendue", PROGRAM);
@@ -73,6 +82,7 @@ impl Stage {
             .env("CARGO_TARGET_DIR", self.path("target"))
             .env("ETENDUE_LAVAPIPE_DIR", self.path("lavapipe"))
             .env("XDG_CONFIG_HOME", self.path("config"))
+            .env("XDG_DATA_HOME", self.path("data"))
             .env_remove("ETENDUE_LAVAPIPE")
             .env_remove("ETENDUE_NO_INSTALL")
             .envs(set.iter().copied())

@@ -16,6 +16,10 @@ sudo="sudo "
 
 say() { printf 'etendue: %s\n' "$*" >&2; }
 
+# Whether a pipe holds the pattern. It is read to its end: grep -q would leave at the first match, the program that
+# writes would die of it, and under pipefail that is a no.
+has() { grep "$@" >/dev/null; }
+
 # apt-get with the rights to install, quietly; its output is shown if it fails.
 apt_get() {
     local log status=0
@@ -71,7 +75,7 @@ install_rustup() {
     install "cargo is not installed" rustup && rustup default stable >&2
 }
 
-rustup_is_packaged() { LC_ALL=C apt-cache policy rustup 2>/dev/null | grep -q 'Candidate: [0-9]'; }
+rustup_is_packaged() { LC_ALL=C apt-cache policy rustup 2>/dev/null | has 'Candidate: [0-9]'; }
 
 need_rust() {
     command -v cargo >/dev/null || PATH=${CARGO_HOME:-${HOME:-}/.cargo}/bin:$PATH
@@ -85,7 +89,7 @@ need_rust() {
 
 has_loader() {
     local file
-    if PATH=$PATH:/sbin ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1'; then return; fi
+    if PATH=$PATH:/sbin ldconfig -p 2>/dev/null | has 'libvulkan\.so\.1'; then return; fi
     for file in /usr/lib/libvulkan.so.1 /usr/lib64/libvulkan.so.1 /usr/local/lib/libvulkan.so.1; do
         [[ ! -e $file ]] || return 0
     done
