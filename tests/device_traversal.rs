@@ -11,6 +11,7 @@ use device_common::{ELEMENTS, Kernel, Setup, rounds_as_the_host, upload};
 use etendue::accel::{Bvh, Hit};
 use etendue::geometry::Ray;
 use etendue::gpu::Buffer;
+use etendue::render::program::stack_constants;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -229,6 +230,17 @@ fn device_and_host_find_the_same_hits_in_a_tree() {
     let sum = compare(&Setup::new(), meshes(), TREE, RAYS);
     assert!(sum.rays >= 1_000_000);
     sum.assert_alike();
+}
+
+/// The traversal's stack is in the workgroup's memory if it fits there, and else private.
+#[test]
+fn the_stack_may_be_in_either_memory() {
+    let mesh = terrain(40, 5);
+    let depth = build(&mesh, TREE).depth;
+    for workgroup_bytes in [0, u32::MAX] {
+        let setup = Setup::new().with(stack_constants(depth, workgroup_bytes));
+        compare(&setup, vec![("terrain", mesh.clone())], TREE, RAYS).assert_alike();
+    }
 }
 
 #[test]

@@ -132,10 +132,8 @@ fn test_pair(e: Element, index: u32, ray: Ray, setup: RaySetup, closest: Hit, ca
       break;
     }
     let second = (waiting & 1u) == 0u;
-    waiting &= 2u;
-    if (second) {
-      waiting = 0u;
-    }
+    // Take out the lowest bit.
+    waiting &= waiting - 1u;
     let id = 2u * index + select(0u, 1u, second);
     let hit = refined_hit(fan_triangle(fan, second));
     let eligible = id != ray.start && id != ray.end;

@@ -50,9 +50,14 @@ impl<'a> Stage<'a> {
     /// Compiles without the driver. Gives the names of the overrides that the shader declares.
     fn compile(&self, settings: &Settings) -> Result<Vec<String>, RenderError> {
         let count_steps = stage("probe", || self.device.probe())?.loop_limit.is_some();
-        let (prepared, gpu_scene) = (self.prepared, self.gpu_scene);
-        let files =
-            program::virtual_files(self.library, settings, prepared, gpu_scene, count_steps)?;
+        let files = program::virtual_files(
+            self.library,
+            settings,
+            self.prepared,
+            self.gpu_scene,
+            count_steps,
+            self.device.info().max_shared_memory,
+        )?;
         let (_, compiled) = program::build(self.library, &files, settings)?;
         Ok(compiled.overrides.into_iter().map(|o| o.name).collect())
     }

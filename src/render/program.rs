@@ -50,9 +50,10 @@ pub fn virtual_files(
     scene: &Prepared,
     gpu_scene: &GpuScene,
     count_steps: bool,
+    workgroup_bytes: u32,
 ) -> Result<VirtualFiles, RenderError> {
     let mut files = choice_files(library, settings)?;
-    let constants = constants(scene, settings, count_steps);
+    let constants = constants(scene, settings, count_steps, workgroup_bytes);
     files.insert("features.wgsl".into(), features_wgsl(&constants));
     files.insert(
         "buffers.wgsl".into(),
@@ -121,15 +122,30 @@ pub enum Constant {
     U32(u32),
 }
 
-/// The constants of a scene and its settings.
+/// The constants of the traversal's stack for a tree of so many levels: it is in the workgroup's
+/// memory, of which the device has `workgroup_bytes`, if all lanes of a workgroup fit.
+pub fn stack_constants(depth: u32, workgroup_bytes: u32) -> [(&'static str, Constant); 2] {
+    /// Three words a level for each of 64 lanes (`shaders/accel/stack.wgsl`).
+    const LEVEL_BYTES: u32 = 3 * 4 * 64;
+    let levels = depth.max(1);
+    let fits = levels * LEVEL_BYTES <= workgroup_bytes;
+    [
+        ("STACK_SIZE", Constant::U32(levels)),
+        ("STACK_IN_WORKGROUP", Constant::Bool(fits)),
+    ]
+}
+
+/// The constants of a scene and its settings, on a device with so much memory for a workgroup.
 pub fn constants(
     scene: &Prepared,
     settings: &Settings,
     count_steps: bool,
+    workgroup_bytes: u32,
 ) -> Vec<(&'static str, Constant)> {
     let format = &scene.vertex_format;
     let offset = |o: Option<u32>| Constant::U32(o.unwrap_or(0));
     let mut list = feature_constants(&scene.features);
+    list.extend(stack_constants(scene.bvh.depth, workgroup_bytes));
     list.extend([
         (
             "HAS_LIGHT_TRIANGLES",
@@ -153,7 +169,6 @@ pub fn constants(
         ("UV0_OFFSET", offset(format.uv0)),
         ("UV1_OFFSET", offset(format.uv1)),
         ("COLOR_OFFSET", offset(format.colors)),
-        ("STACK_SIZE", Constant::U32(scene.bvh.depth.max(1))),
         ("COUNT_STEPS", Constant::Bool(count_steps)),
         ("COUNT_RAYS", Constant::Bool(settings.stats)),
     ]);

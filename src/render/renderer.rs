@@ -88,8 +88,14 @@ impl<'a> Renderer<'a> {
         settings.check()?;
         let start = Instant::now();
         let loop_limit = stage("probe", || device.probe())?.loop_limit;
-        let virtuals =
-            program::virtual_files(library, settings, prepared, gpu_scene, loop_limit.is_some())?;
+        let virtuals = program::virtual_files(
+            library,
+            settings,
+            prepared,
+            gpu_scene,
+            loop_limit.is_some(),
+            device.info().max_shared_memory,
+        )?;
         let (composed, compiled) = program::build(library, &virtuals, settings)?;
         if compiled.uses_int64() && !device.info().int64 {
             let device = device.info().name.clone();

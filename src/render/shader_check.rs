@@ -4,9 +4,11 @@ use glam::Vec3;
 
 use super::error::RenderError;
 use super::paged::large_arrays_wgsl;
-use super::program::{self, Constant, ENTRY_FILE, feature_constants, features_wgsl};
+use super::program::{
+    self, Constant, ENTRY_FILE, feature_constants, features_wgsl, stack_constants,
+};
 use super::settings::Settings;
-use crate::accel::{BuildOptions, Bvh};
+use crate::accel::{BuildOptions, Bvh, MAX_DEPTH};
 use crate::scene::Features;
 use crate::shader::{Check, CompileOptions, ShaderLibrary, StructLayout, VirtualFiles};
 
@@ -51,6 +53,8 @@ pub fn constants(on: bool) -> Vec<(&'static str, Constant)> {
     for (_, value) in &mut constants {
         *value = Constant::Bool(on);
     }
+    // With everything on the tree is too deep for the workgroup's memory.
+    constants.extend(stack_constants(if on { MAX_DEPTH } else { 1 }, 16 << 10));
     constants.extend([
         ("HAS_LIGHT_TRIANGLES", Constant::Bool(on)),
         ("HAS_PUNCTUAL_LIGHTS", Constant::Bool(on)),
@@ -62,7 +66,6 @@ pub fn constants(on: bool) -> Vec<(&'static str, Constant)> {
         ("UV0_OFFSET", Constant::U32(7)),
         ("UV1_OFFSET", Constant::U32(9)),
         ("COLOR_OFFSET", Constant::U32(11)),
-        ("STACK_SIZE", Constant::U32(if on { 64 } else { 1 })),
         ("COUNT_STEPS", Constant::Bool(on)),
         ("COUNT_RAYS", Constant::Bool(on)),
     ]);

@@ -15,11 +15,13 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use bytemuck::Pod;
-use etendue::accel::Bvh;
+use etendue::accel::{Bvh, MAX_DEPTH};
 use etendue::gpu::{BindingKind, Bound, Buffer, Device, Pipeline};
 use etendue::render::large_arrays_wgsl;
 use etendue::render::layout::layouts;
-use etendue::render::program::{Constant, accel_files, feature_constants, features_wgsl};
+use etendue::render::program::{
+    Constant, accel_files, feature_constants, features_wgsl, stack_constants,
+};
 use etendue::scene::Features;
 use etendue::shader::{
     self, CompileOptions, ShaderLibrary, VirtualFiles, compile as compile_shader, compose,
@@ -40,6 +42,11 @@ pub fn device() -> &'static Device {
 pub fn rounds_as_the_host() -> bool {
     let probe = device().probe().unwrap_or_else(|error| panic!("{error}"));
     !probe.contracts && !probe.flushes_denormals
+}
+
+/// The constants of the stack of a tree, as a render on the device has them.
+pub fn stack(depth: u32) -> [(&'static str, Constant); 2] {
+    stack_constants(depth, device().info().max_shared_memory)
 }
 
 /// What a kernel is compiled with.
@@ -78,7 +85,7 @@ impl Setup {
         ] {
             constants.insert(name, Constant::U32(0));
         }
-        constants.insert("STACK_SIZE", Constant::U32(64));
+        constants.extend(stack(MAX_DEPTH));
         Self {
             constants,
             sampler: "independent",
@@ -93,7 +100,7 @@ impl Setup {
     /// For a scene's acceleration structure, which is a tree unless said otherwise.
     pub fn structure(mut self, bvh: &Bvh) -> Self {
         self.accel = accel_files(bvh);
-        self.with([("STACK_SIZE", Constant::U32(bvh.depth.max(1)))])
+        self.with(stack(bvh.depth))
     }
 
     /// Sets constants of `features.wgsl`.

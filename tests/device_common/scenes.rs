@@ -32,7 +32,8 @@ impl Stage {
 
     /// The constants that a render of the scene would have.
     pub fn constants(&self) -> Vec<(&'static str, Constant)> {
-        program::constants(&self.prepared, &Settings::default(), false)
+        let workgroup_bytes = device().info().max_shared_memory;
+        program::constants(&self.prepared, &Settings::default(), false, workgroup_bytes)
     }
 
     /// Every buffer of the scene.
