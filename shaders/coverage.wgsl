@@ -25,11 +25,16 @@ fn coverage(triangle: Triangle, b: vec3f) -> f32 {
     return clamp(alpha, 0.0, 1.0);
 }
 
+// Whether the camera looks through a triangle because it sees the back.
+fn is_culled(triangle_flags: u32, back_face: bool, camera: bool) -> bool {
+    return HAS_SINGLE_SIDED && camera && back_face && (triangle_flags & TRIANGLE_SINGLE_SIDED) != 0u;
+}
+
 // Whether a ray meets the surface at this hit. Blended surfaces are met with probability alpha,
 // decided by a hash of the ray's seed and the triangle, so that the order in which a traversal
 // finds hits has no influence.
 fn accept_hit(triangle: Triangle, b: vec3f, back_face: bool, camera: bool, seed: u32) -> bool {
-    if (HAS_SINGLE_SIDED && camera && back_face && (triangle.flags & TRIANGLE_SINGLE_SIDED) != 0u) {
+    if (is_culled(triangle.flags, back_face, camera)) {
         return false;
     }
     if (HAS_ALPHA && (triangle.flags & TRIANGLE_ALPHA) != 0u) {

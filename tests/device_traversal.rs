@@ -107,9 +107,22 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
         ("cube", cube(8)),
         ("sphere", sphere(24)),
         ("coincident", stacked),
+        ("layers", layers()),
         ("one", vec![[Vec3::ZERO, Vec3::X, Vec3::Y]]),
         ("all the same", vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 500]),
     ]
+}
+
+/// Triangles of all shapes, four of each, whose vertices are a few units of the last place apart.
+fn layers() -> Mesh {
+    let mut random = Random(6);
+    let mut nudged = |x: f32| f32::from_bits(x.to_bits() + random.below(5) as u32);
+    [soup(60, 0.5, 7), needles(60, 8)]
+        .concat()
+        .into_iter()
+        .flat_map(|triangle| [triangle; 4])
+        .map(|triangle| triangle.map(|v| Vec3::from(v.to_array().map(&mut nudged))))
+        .collect()
 }
 
 /// As is, tiny, huge, and far from the origin.
@@ -294,6 +307,20 @@ fn a_wrong_tie_is_noticed() {
     let same = vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 5];
     let sum = compare(&setup, vec![("all the same", same)], LIST, RAYS);
     assert!(sum.unlike * 10 > sum.hits, "{sum:?}");
+}
+
+/// Negative control: hits that are put in order by a t that is less exact than it is said to be.
+#[test]
+fn bounds_that_are_too_narrow_are_noticed() {
+    for (from, to) in [
+        ("t - error, t + error", "t, t"),
+        ("EDGE_SLACK * (span", "0.0 * (span"),
+        ("DEPTH_SLACK * depth", "0.0 * depth"),
+    ] {
+        let setup = Setup::new().patched("geometry/triangle.wgsl", from, to);
+        let sum = compare(&setup, vec![("layers", layers())], TREE, RAYS);
+        assert!(sum.unlike * 10_000 > sum.hits, "{to}: {sum:?}");
+    }
 }
 
 /// Negative control: children that are visited although they are not there, or left out.

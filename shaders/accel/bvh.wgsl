@@ -121,11 +121,51 @@ fn visit_node(e: Element, setup: BoxSetup, t_max: f32) -> Group {
   return group;
 }
 
-// The closer of best and the hits on a pair of triangles; at equal t the smaller number wins.
-fn test_pair(e: Element, index: u32, ray: Ray, setup: RaySetup, closest: Hit, camera_ray: bool, seed: u32) -> Hit {
+// The closest hit so far, or the end of the ray. Its t as refined_hit finds it is in [low, high]; what
+// it is exactly is asked only where that decides which of two hits is closer.
+struct Closest {
+  low: f32,
+  high: f32,
+  triangle: u32,
+}
+
+// The closer of a hit and those on a pair of triangles.
+fn test_pair(
+  e: Element, index: u32, ray: Ray, setup: RaySetup, so_far: Closest, camera_ray: bool, seed: u32,
+) -> Closest {
   let v = pair_vertices(e);
   let fan = fan_candidates(setup, v.v0, v.v1, v.v2, v.v3);
-  var best = closest;
+  var best = so_far;
+  if (fan.first || fan.second) {
+    let second = !fan.first;
+    let edges = select(fan.first_edges, fan.second_edges, second);
+    let flags = select(e.d.y, e.d.z, second);
+    let t = exact_t_bounds(edges, fan_triangle(fan, second));
+    let is_certain = t.certain && !(fan.first && fan.second) && !(HAS_ALPHA && (flags & TRIANGLE_ALPHA) != 0u);
+    if (is_certain && (t.low > best.high || t.high < 0.0)) {
+      return best;
+    }
+    if (is_certain && t.low > 0.0 && t.high < best.low) {
+      let id = 2u * index + select(0u, 1u, second);
+      if (id != ray.start && id != ray.end && !is_culled(flags, edges.x < 0.0, camera_ray)) {
+        best = Closest(t.low, t.high, id);
+      }
+    } else {
+      best = test_pair_exactly(e, index, ray, setup, fan, so_far, camera_ray, seed);
+    }
+  }
+  return best;
+}
+
+// The same by refined hits, of which at equal t that with the smaller number is taken.
+fn test_pair_exactly(
+  e: Element, index: u32, ray: Ray, setup: RaySetup, fan: FanCandidates, so_far: Closest, camera_ray: bool, seed: u32,
+) -> Closest {
+  var best = so_far;
+  if (best.low < best.high) {
+    best.high = refined_hit_on(best.triangle, setup).t;
+    best.low = best.high;
+  }
   var waiting = select(0u, 1u, fan.first) | select(0u, 2u, fan.second);
   while (waiting != 0u) {
     if (count_step()) {
@@ -137,13 +177,13 @@ fn test_pair(e: Element, index: u32, ray: Ray, setup: RaySetup, closest: Hit, ca
     let id = 2u * index + select(0u, 1u, second);
     let hit = refined_hit(fan_triangle(fan, second));
     let eligible = id != ray.start && id != ray.end;
-    if (eligible && hit.t > 0.0 && (hit.t < best.t || (hit.t == best.t && id < best.triangle))) {
+    if (eligible && hit.t > 0.0 && (hit.t < best.low || (hit.t == best.low && id < best.triangle))) {
       if (HAS_ALPHA || HAS_SINGLE_SIDED) {
         if (!accept_hit(pair_triangle(e, second), hit.b, hit.back_face, camera_ray, seed)) {
           continue;
         }
       }
-      best = Hit(hit.t, id, hit.b, hit.back_face);
+      best = Closest(hit.t, hit.t, id);
     }
   }
   return best;
@@ -157,7 +197,7 @@ struct Traversal {
   is_shadow: bool,
   setup: RaySetup,
   boxes: BoxSetup,
-  best: Hit,
+  best: Closest,
   group: Group,
   stack_size: u32,
   // The element to look at next.
@@ -185,13 +225,18 @@ fn trace_ray(t: ptr<function, Traversal>, is_shadow: bool) {
   }
   (*t).setup = ray_setup((*t).ray.origin, (*t).ray.direction);
   (*t).boxes = box_setup((*t).ray);
-  (*t).best = miss((*t).ray);
+  (*t).best = Closest((*t).ray.t_max, (*t).ray.t_max, MISS);
   (*t).group = Group(0u, 0u, 0u);
   (*t).next = 0u;
 }
 
 fn trace_answer(t: Traversal) -> Answer {
-  return Answer(t.best, t.occluded);
+  var hit = miss(t.query.ray);
+  if (t.best.triangle != MISS) {
+    let refined = refined_hit_on(t.best.triangle, t.setup);
+    hit = Hit(refined.t, t.best.triangle, refined.b, refined.back_face);
+  }
+  return Answer(hit, t.occluded);
 }
 
 // Looks at so many elements, or fewer where that answers the query; false if there is more to do.
@@ -204,7 +249,7 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
     let index = (*t).next & ~LEAF_FLAG;
     let e = load_element(index);
     if ((*t).next < LEAF_FLAG) {
-      let children = visit_node(e, (*t).boxes, (*t).best.t);
+      let children = visit_node(e, (*t).boxes, (*t).best.high);
       if (children.slots != 0u) {
         if ((*t).group.slots != 0u) {
           stack_write((*t).stack_size, (*t).group);
@@ -229,7 +274,7 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
 // Finds the next element, among the children that were put aside last; where there is none the ray
 // is done.
 fn go_on(t: ptr<function, Traversal>) {
-  let t_max = (*t).best.t * FAR_SLACK;
+  let t_max = (*t).best.high * FAR_SLACK;
   if ((*t).group.slots == 0u || bitcast<f32>((*t).group.entry) > t_max) {
     (*t).group.slots = 0u;
     while ((*t).stack_size > 0u) {

@@ -92,8 +92,8 @@ fn closer(
     if (is_closer) {
       is_closer = accept_hit(load_triangle(id), hit.b, hit.back_face, camera_ray, seed);
     }
-  } else if ((flags & TRIANGLE_SINGLE_SIDED) != 0u) {
-    is_closer &= !(camera_ray & hit.back_face);
+  } else {
+    is_closer &= !is_culled(flags, hit.back_face, camera_ray);
   }
   return ListHit(select(so_far.t, hit.t, is_closer), select(so_far.triangle, id, is_closer));
 }

@@ -21,11 +21,12 @@ fn exact_high(a: f32) -> f32 {
 /// is exact by Sterbenz' lemma; taking away `a_low·b_high` leaves a multiple of 2¹² of at most
 /// (2²⁴ - 2¹²)(2¹² - 1) + (2¹² - 1)² + 2²³ < 2³⁶, so 24 bits; the last two are smaller still.
 ///
-/// The arguments are put in order so that the result is symmetric in them where it does underflow
-/// as well: the two triangles at an edge must round alike.
+/// The arguments are put in order, that of their bits, so that the result is symmetric in them where
+/// it does underflow as well: the two triangles at an edge must round alike.
 pub fn exact_product_error(a: f32, b: f32) -> f32 {
-    let x = a.min(b);
-    let y = a.max(b);
+    let (a, b) = (a.to_bits() as i32, b.to_bits() as i32);
+    let x = f32::from_bits(a.min(b) as u32);
+    let y = f32::from_bits(a.max(b) as u32);
     let product = x * y;
     let x_high = exact_high(x);
     let x_low = x - x_high;

@@ -9,6 +9,7 @@
 pub mod aabb;
 pub mod exact;
 pub mod ray;
+pub mod t_bounds;
 pub mod triangle;
 
 pub use aabb::Aabb;

@@ -92,7 +92,7 @@ fn exact_shear(setup: &RaySetup, vertex: Vec3) -> Vec3 {
 }
 
 /// Σ edge · z, from left to right.
-fn exact_depth(edges: Vec3, a: Vec3, b: Vec3, c: Vec3) -> f32 {
+pub(super) fn exact_depth(edges: Vec3, a: Vec3, b: Vec3, c: Vec3) -> f32 {
     (edges.x * a.z + edges.y * b.z) + edges.z * c.z
 }
 
