@@ -202,6 +202,7 @@ mod tests {
             ],
             display: DisplaySettings::default(),
             report: None,
+            only_shader: false,
         };
         let picture = Picture::new(1, 1).with_rgb("", &[0.5; 3]);
         let written = outputs.write(&picture, &Metadata::default());
