@@ -9,6 +9,7 @@ fn film_add(pixel: ptr<function, FilmPixel>, L: vec3f) {
     if (COUNT_RAYS) {
         (*pixel).closest_rays += closest_rays;
         (*pixel).any_rays += any_rays;
+        add_element_counts();
     }
     if (!is_finite(L)) {
         (*pixel).non_finite += 1u;
@@ -20,6 +21,18 @@ fn film_add(pixel: ptr<function, FilmPixel>, L: vec3f) {
     let square = exact_accumulate((*pixel).square, (*pixel).square_low, L * L);
     (*pixel).square = square.high;
     (*pixel).square_low = square.low;
+}
+
+fn add_element_counts() {
+    let nodes_before = atomicAdd(&element_counts.nodes_low, nodes_seen);
+    let pairs_before = atomicAdd(&element_counts.pairs_low, pairs_seen);
+    // Carry: whichever lane took the low half round adds to the high one.
+    if (nodes_before + nodes_seen < nodes_before) {
+        atomicAdd(&element_counts.nodes_high, 1u);
+    }
+    if (pairs_before + pairs_seen < pairs_before) {
+        atomicAdd(&element_counts.pairs_high, 1u);
+    }
 }
 
 struct DoubleVec3 {

@@ -11,6 +11,9 @@ var<private> steps: u32 = 0u;
 var<private> longest_sample: u32 = 0u;
 var<private> closest_rays: u32 = 0u;
 var<private> any_rays: u32 = 0u;
+// Elements of the acceleration structure that the sample in flight looked at.
+var<private> nodes_seen: u32 = 0u;
+var<private> pairs_seen: u32 = 0u;
 
 // To be called once in every loop body: `if (count_step()) { break; }`.
 fn count_step() -> bool {
@@ -51,9 +54,17 @@ fn note_sample_steps(before: u32) {
     }
 }
 
+// To be called under COUNT_RAYS for each element that is looked at, a node or a pair of triangles.
+fn count_element(is_node: bool) {
+    nodes_seen += select(0u, 1u, is_node);
+    pairs_seen += select(1u, 0u, is_node);
+}
+
 fn reset_ray_counts() {
     if (COUNT_RAYS) {
         closest_rays = 0u;
         any_rays = 0u;
+        nodes_seen = 0u;
+        pairs_seen = 0u;
     }
 }

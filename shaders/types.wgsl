@@ -67,6 +67,15 @@ struct Status {
     pad2: u32,
 }
 
+// Elements of the acceleration structure that the rays of finished samples looked at, 64 bits each, if
+// COUNT_RAYS: a million samples a pixel pass 2^32.
+struct ElementCounts {
+    nodes_low: atomic<u32>,
+    nodes_high: atomic<u32>,
+    pairs_low: atomic<u32>,
+    pairs_high: atomic<u32>,
+}
+
 // A pixel's sums over its samples, each as an unevaluated pair of floats (value + value_low).
 struct FilmPixel {
     sum: vec3f,

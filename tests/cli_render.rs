@@ -118,6 +118,13 @@ fn the_report_has_every_field() {
     assert_eq!(report["outputs"][0], output.as_str());
     assert!(report["rays"]["closest"].as_u64() >= Some(16 * 12 * 4));
     assert!(report["rays"]["any"].as_u64() > Some(0));
+    // A list: every ray tests all pairs of the scene.
+    assert_eq!(report["rays"]["nodes_per_ray"], 0.0);
+    let pairs = report["bvh"]["bytes"].as_u64().map(|bytes| bytes / 64);
+    assert_eq!(
+        report["rays"]["pairs_per_ray"].as_f64(),
+        pairs.map(|n| n as f64)
+    );
     assert!(report["mean_radiance"][2].as_f64() > Some(0.0));
     assert!(report["relative_error"].as_f64() > Some(0.0));
 }
@@ -232,6 +239,18 @@ fn print_wgsl_prints_the_shader_and_renders_nothing() {
     assert!(!run.stdout.lines().any(|line| line.starts_with("#include")));
     assert!(run.stdout.contains("const HAS_ENVIRONMENT: bool = false;"));
     assert_eq!(run.stderr, "");
+}
+
+#[test]
+fn the_spirv_is_written_and_nothing_is_rendered() {
+    let folder = folder();
+    let path = path_in(&folder, "kernel.spv");
+    let run = render(&["--spirv", &path]).ends_with(0);
+    assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("", ""));
+    let bytes = std::fs::read(&path).expect("a file");
+    assert_eq!(bytes[..4], 0x0723_0203_u32.to_ne_bytes());
+    let name = b"trace_on";
+    assert!(bytes.windows(name.len()).any(|part| part == name));
 }
 
 #[test]

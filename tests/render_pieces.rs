@@ -53,7 +53,10 @@ fn the_picture_does_not_depend_on_the_pieces() {
             bits(&whole),
             "{tiles} tiles, {samples} samples"
         );
+        assert_eq!(film.steps, whole.steps, "{tiles} tiles, {samples} samples");
     }
     let (_, measured) = render(None, None);
     assert_eq!(bits(&measured), bits(&whole));
+    assert_eq!(measured.steps, whole.steps);
+    assert!(whole.steps.nodes > 0 && whole.steps.pairs > 0);
 }

@@ -248,6 +248,7 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
     }
     let index = (*t).next & ~LEAF_FLAG;
     let e = load_element(index);
+    if (COUNT_RAYS) { count_element((*t).next < LEAF_FLAG); }
     if ((*t).next < LEAF_FLAG) {
       let children = visit_node(e, (*t).boxes, (*t).best.high);
       if (children.slots != 0u) {

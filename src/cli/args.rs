@@ -112,11 +112,15 @@ pub struct RenderArgs {
     #[arg(long)]
     pub print_wgsl: bool,
 
+    /// Write the SPIR-V that is compiled, with the names of its functions, and render nothing
+    #[arg(long, value_name = "FILE")]
+    pub spirv: Option<PathBuf>,
+
     /// Compile with bounds checks: slower, and a mistake in an edited shader stays harmless
     #[arg(long)]
     pub checked: bool,
 
-    /// Count rays for the report: costs some time
+    /// Count rays, and the nodes and pairs of triangles that they look at, for the report: costs some time
     #[arg(long)]
     pub stats: bool,
 

@@ -24,6 +24,8 @@ pub struct Outputs {
     pictures: Vec<(PathBuf, Format)>,
     display: DisplaySettings,
     report: Option<PathBuf>,
+    /// Whether the shader is asked for, and nothing is to be rendered.
+    pub only_shader: bool,
 }
 
 /// What came of writing the pictures.
@@ -42,9 +44,10 @@ impl Outputs {
     /// Nothing to do, an extension other than .exr and .png, a file twice or over an input, a folder
     /// that is missing or in which no file can be made.
     pub fn check(args: &RenderArgs) -> Result<Self> {
-        if args.output.is_empty() && args.json.is_none() && !args.print_wgsl {
+        let only_shader = args.print_wgsl || args.spirv.is_some();
+        if args.output.is_empty() && args.json.is_none() && !only_shader {
             bail!(
-                "nothing to do: ask for a picture (-o picture.exr), a report (--json -) or the shader (--print-wgsl)"
+                "nothing to do: ask for a picture (-o picture.exr), a report (--json -) or the shader (--print-wgsl, --spirv kernel.spv)"
             );
         }
         let with_format = |path: &PathBuf| Ok((path.clone(), format_of(path)?));
@@ -56,12 +59,14 @@ impl Outputs {
         let files = args
             .output
             .iter()
-            .chain(report.iter().filter(|p| !is_stdout(p)));
+            .chain(report.iter().filter(|p| !is_stdout(p)))
+            .chain(&args.spirv);
         check_distinct(args, files.clone())?;
         files.map(PathBuf::as_path).try_for_each(check_writable)?;
         Ok(Self {
             pictures,
             report,
+            only_shader,
             display: DisplaySettings {
                 exposure_ev: args.exposure,
                 tone_map: args.tonemap,
@@ -197,6 +202,7 @@ mod tests {
             ],
             display: DisplaySettings::default(),
             report: None,
+            only_shader: false,
         };
         let picture = Picture::new(1, 1).with_rgb("", &[0.5; 3]);
         let written = outputs.write(&picture, &Metadata::default());

@@ -62,8 +62,8 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     let mut renderer = stage.renderer(&settings)?;
     time.compile = renderer.compile_time().as_secs_f64();
     warnings.add_all(&renderer.warnings());
-    if args.print_wgsl {
-        return message::print(renderer.wgsl()).map(|()| Exit::Fine);
+    if outputs.only_shader {
+        return show_shader(args, &renderer).map(|()| Exit::Fine);
     }
 
     // From samples to a picture.
@@ -89,6 +89,18 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     let picture = picture(args, &film, &layers.films);
     let errors = write(&outputs, &picture, &metadata, &mut report, start);
     Ok(verdict(&report, layers.failure.into_iter().chain(errors)))
+}
+
+/// Prints the WGSL and writes the SPIR-V, in words of this machine's byte order.
+fn show_shader(args: &RenderArgs, renderer: &Renderer<'_>) -> Result<()> {
+    if let Some(path) = &args.spirv {
+        std::fs::write(path, bytemuck::cast_slice(renderer.spirv()))
+            .with_context(|| format!("{}: cannot write", path.display()))?;
+    }
+    match args.print_wgsl {
+        true => message::print(renderer.wgsl()),
+        false => Ok(()),
+    }
 }
 
 /// Draws the samples. Should the device give up on the way, what it has drawn until then is worth

@@ -97,12 +97,31 @@ pub struct Seconds {
 }
 
 /// Rays traced.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Rays {
     /// For the closest hit.
     pub closest: u64,
     /// For any hit: shadow rays.
     pub any: u64,
+    /// Nodes of the acceleration structure that a ray of either kind looks at, on average; null
+    /// without a ray, and none in a list of triangles.
+    pub nodes_per_ray: Option<f64>,
+    /// Pairs of triangles likewise: those tested, or all of a list.
+    pub pairs_per_ray: Option<f64>,
+}
+
+impl Rays {
+    fn of(film: &Film) -> Self {
+        let (closest, any) = film.rays();
+        let rays = closest + any;
+        let share = |n: u64| (rays > 0).then(|| n as f64 / rays as f64);
+        Self {
+            closest,
+            any,
+            nodes_per_ray: share(film.steps.nodes),
+            pairs_per_ray: share(film.steps.pairs),
+        }
+    }
 }
 
 /// Samples a pixel: a whole number unless the render was interrupted.
@@ -166,9 +185,10 @@ impl Report {
         self.non_finite_samples = film.non_finite_samples();
         warn_non_finite(film, "the picture", warnings);
         if stats {
-            let (closest, any) = film.rays();
-            self.rays = Some(Rays { closest, any });
-            self.rays_per_second = Some((closest + any) as f64 / self.seconds.render.max(1e-9));
+            let rays = Rays::of(film);
+            let traced = (rays.closest + rays.any) as f64;
+            self.rays = Some(rays);
+            self.rays_per_second = Some(traced / self.seconds.render.max(1e-9));
         }
     }
 }

@@ -75,6 +75,7 @@ fn with_camera(args: &RenderArgs, camera: usize, placed: &Camera) -> Settings {
         overrides: args.set.clone(),
         checked: args.checked,
         stats: args.stats,
+        debug_names: args.spirv.is_some(),
         ..Settings::default()
     }
 }

@@ -1,6 +1,7 @@
 //! The accumulated picture and what it says about its own error.
 
 use super::layout::FilmPixel;
+use crate::accel::Steps;
 
 /// Sums over the samples of every pixel, row-major from the top.
 #[derive(Debug, Clone)]
@@ -11,6 +12,9 @@ pub struct Film {
     pub height: u32,
     /// `width × height` pixels.
     pub pixels: Vec<FilmPixel>,
+    /// Elements of the acceleration structure that the rays of all samples looked at; zero unless they
+    /// were counted.
+    pub steps: Steps,
 }
 
 impl Film {

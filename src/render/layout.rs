@@ -167,6 +167,20 @@ shared_struct! {
 }
 
 shared_struct! {
+    /// Elements of the acceleration structure that rays looked at, 64 bits each.
+    ElementCounts {
+        /// Nodes, low half.
+        nodes_low: u32,
+        /// Nodes, high half.
+        nodes_high: u32,
+        /// Pairs of triangles, low half.
+        pairs_low: u32,
+        /// Pairs of triangles, high half.
+        pairs_high: u32,
+    }
+}
+
+shared_struct! {
     /// A pixel's sums, each an unevaluated pair of floats.
     FilmPixel {
         /// Sum of radiance, high part.
@@ -307,6 +321,7 @@ pub fn layouts() -> Vec<StructLayout> {
         Dispatch::layout(),
         Status::layout(),
         FilmPixel::layout(),
+        ElementCounts::layout(),
         element_layout(),
         TextureSlot::layout(),
         Material::layout(),

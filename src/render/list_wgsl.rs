@@ -10,9 +10,13 @@ use crate::accel::Element;
 /// The `list.wgsl` of a scene: which vertices its pairs share. Positions are not in it, so that the
 /// text is the same wherever the camera stands.
 pub fn list_wgsl(elements: &[Element]) -> String {
-    let mut text = String::from(
+    let pairs = elements.len();
+    let mut text = format!(
         "// Generated: the pairs of the scene, by the vertices that they share.\n\
-         fn closest_of_all(setup: RaySetup, ray: Ray, camera_ray: bool, seed: u32) -> ListHit {\n\
+         fn closest_of_all(setup: RaySetup, ray: Ray, camera_ray: bool, seed: u32) -> ListHit {{\n\
+         \x20   if (COUNT_RAYS) {{\n\
+         \x20       pairs_seen += {pairs}u;\n\
+         \x20   }}\n\
          \x20   // A hit at t_max counts.\n\
          \x20   var hit = ListHit(bitcast<f32>(bitcast<u32>(ray.t_max) + 1u), MISS);\n",
     );

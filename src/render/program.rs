@@ -33,7 +33,7 @@ pub fn build(
         checked: settings.checked,
         overrides: &settings.overrides,
         layouts: &layouts(),
-        debug_names: false,
+        debug_names: settings.debug_names,
     };
     let recall = || compile_or_recall(&composed, &options, library.cache());
     let compiled = stage("spirv", recall)?;

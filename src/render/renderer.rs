@@ -8,10 +8,11 @@ use super::error::RenderError;
 use super::film::Film;
 use super::frame::base_frame;
 use super::gpu_scene::GpuScene;
-use super::layout::{Dispatch, FilmPixel, Status};
+use super::layout::{Dispatch, ElementCounts, FilmPixel, Status};
 use super::prepared::Prepared;
 use super::program;
 use super::settings::Settings;
+use crate::accel::Steps;
 use crate::gpu::{BindGroup, BindingKind, Buffer, Device, Pipeline};
 use crate::host::stages::stage;
 use crate::scene::Scene;
@@ -53,7 +54,9 @@ pub struct Renderer<'a> {
     bands: Vec<BoundBand>,
     dispatch: Buffer,
     status: Buffer,
+    element_counts: Buffer,
     wgsl: String,
+    spirv: Vec<u32>,
     overrides: Vec<OverrideInfo>,
     warnings: Vec<Diagnostic>,
     /// Iterations at which the driver leaves loops, if it does.
@@ -122,7 +125,9 @@ impl<'a> Renderer<'a> {
             bands: Vec::new(),
             dispatch: device.buffer("dispatch", size_of::<Dispatch>() as u64)?,
             status: device.buffer("status", size_of::<Status>() as u64)?,
+            element_counts: device.buffer("element counts", size_of::<ElementCounts>() as u64)?,
             wgsl: composed.text,
+            spirv: compiled.spirv,
             overrides: compiled.overrides,
             warnings: compiled.warnings,
             loop_limit,
@@ -161,6 +166,7 @@ impl<'a> Renderer<'a> {
                 (1, &self.dispatch),
                 (2, &film),
                 (3, &self.status),
+                (9, &self.element_counts),
             ];
             let buffers: Vec<_> = own
                 .into_iter()
@@ -370,12 +376,27 @@ impl<'a> Renderer<'a> {
             width: self.settings.width,
             height: self.settings.height,
             pixels,
+            steps: self.steps()?,
         })
+    }
+
+    fn steps(&self) -> Result<Steps, RenderError> {
+        let counts: Vec<ElementCounts> = self.device.read(&self.element_counts, 0, 1)?;
+        let wide = |low: u32, high: u32| u64::from(high) << 32 | u64::from(low);
+        Ok(counts.first().map_or(Steps::default(), |c| Steps {
+            nodes: wide(c.nodes_low, c.nodes_high),
+            pairs: wide(c.pairs_low, c.pairs_high),
+        }))
     }
 
     /// The composed shader text that was compiled.
     pub fn wgsl(&self) -> &str {
         &self.wgsl
+    }
+
+    /// The SPIR-V words that the driver got.
+    pub fn spirv(&self) -> &[u32] {
+        &self.spirv
     }
 
     /// The overrides that the shader declares.

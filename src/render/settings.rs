@@ -28,8 +28,10 @@ pub struct Settings {
     pub overrides: Vec<(String, f64)>,
     /// Compile with bounds checks, for edited shaders.
     pub checked: bool,
-    /// Count rays.
+    /// Count rays, and the elements of the acceleration structure that they look at.
     pub stats: bool,
+    /// Keep the names of functions and variables in the SPIR-V.
+    pub debug_names: bool,
     /// Tiles of 8 × 8 pixels in a piece of work, instead of as many as take about 100 ms. No bit of
     /// the picture depends on it.
     pub piece_tiles: Option<u32>,
@@ -57,6 +59,7 @@ impl Default for Settings {
             overrides: Vec::new(),
             checked: false,
             stats: false,
+            debug_names: false,
             piece_tiles: None,
             pass_samples: None,
             doublewords: false,

@@ -5,7 +5,7 @@ import json
 import pathlib
 import sys
 
-from . import assets, builder, compare, gpu, peer_etendue, places, scaling, scene_writer, tables
+from . import assets, builder, compare, gpu, kernel, peer_etendue, places, scaling, scene_writer, tables
 from .places import BenchError
 
 
@@ -29,7 +29,7 @@ def parser():
     top = argparse.ArgumentParser(
         prog="tools/bench",
         description="Measures étendue against its peers.",
-        epilog="Also: tools/bench scaling, tools/bench gpu, tools/bench bvh; each has --help.",
+        epilog="Also: tools/bench scaling, tools/bench gpu, tools/bench kernel, tools/bench bvh; each has --help.",
     )
     top.add_argument(
         "--scenes", default="", help=f"comma-separated: {', '.join(scene_writer.NAMES)} (default: all that can be had)"
@@ -137,31 +137,47 @@ def measure_scaling(arguments):
     return finish(options, rows, table)
 
 
-def measure_gpu(arguments):
-    top = argparse.ArgumentParser(prog="tools/bench gpu", description="Rays per second at 1080p.")
-    top.add_argument("--scenes", default="cornell,spheres-360k,spheres-2m,spheres-8m")
-    top.add_argument("--rounds", type=positive, default=5)
-    top.add_argument("--spp", type=positive, default=64)
+def options_alone(name, description, scenes, spp):
+    """What the measurements of étendue's rays have in common."""
+    top = argparse.ArgumentParser(prog=f"tools/bench {name}", description=description)
+    top.add_argument("--scenes", default=scenes, help="comma-separated (default %(default)s)")
+    top.add_argument("--rounds", type=positive, default=5, help="interleaved rounds (default %(default)s)")
+    top.add_argument("--spp", type=positive, default=spp, help="samples a pixel (default %(default)s)")
     top.add_argument("--threads", type=positive, default=places.threads())
     add_device(top)
+    return top
+
+
+def measure_gpu(arguments):
+    top = options_alone("gpu", "Rays per second at 1080p.", "cornell,spheres-360k,spheres-2m,spheres-8m", 64)
     options = top.parse_args(arguments)
     scenes = split(options.scenes, scene_writer.NAMES, "--scenes")
     rows = gpu.measure(command_of(options), options.threads, scenes, options.rounds, options.spp)
     return finish(options, rows, gpu.markdown(rows, options.rounds, options.spp))
 
 
-def measure_bvh(arguments):
-    top = argparse.ArgumentParser(prog="tools/bench bvh", description="The builder's presets.")
-    top.add_argument("--scenes", default="spheres-360k,spheres-2m,spheres-8m")
-    top.add_argument("--rounds", type=positive, default=5)
-    top.add_argument("--spp", type=positive, default=4)
-    top.add_argument("--size", type=positive, default=512)
-    top.add_argument("--threads", type=positive, default=places.threads())
-    add_device(top)
+def measure_kernel(arguments):
+    description = "What the compiled kernel does for a ray, and the limit that a device puts to it."
+    top = options_alone("kernel", description, "cornell,spheres-360k", 1)
+    top.add_argument("--bandwidth", type=float, metavar="GB/s", help="of the device's memory; H100 SXM: 3350")
+    top.add_argument("--tflops", type=float, metavar="N", help="its peak in fp32, 10¹²/s; H100 SXM: 67")
     options = top.parse_args(arguments)
     scenes = split(options.scenes, scene_writer.NAMES, "--scenes")
-    rows = builder.measure(command_of(options), options.threads, scenes, options.rounds, options.spp, options.size)
-    return finish(options, rows, builder.markdown(rows, options.rounds, options.spp, options.size))
+    drawn = options.rounds, options.spp
+    figures = options.bandwidth, options.tflops
+    rows = kernel.measure(command_of(options), options.threads, scenes, *drawn, *figures)
+    return finish(options, rows, kernel.markdown(rows, options.gpu))
+
+
+def measure_bvh(arguments):
+    top = options_alone("bvh", "The builder's presets, and Embree.", "spheres-360k,spheres-2m,spheres-8m", 4)
+    top.add_argument("--size", type=positive, default=512, help="width and height (default %(default)s)")
+    top.add_argument("--no-embree", action="store_true", help="étendue alone: nothing is installed")
+    options = top.parse_args(arguments)
+    scenes = split(options.scenes, scene_writer.NAMES, "--scenes")
+    drawn = options.rounds, options.spp, options.size
+    rows = builder.measure(command_of(options), options.threads, scenes, *drawn, not options.no_embree)
+    return finish(options, rows, builder.markdown(rows, *drawn))
 
 
 def finish(options, report, table):
@@ -170,7 +186,7 @@ def finish(options, report, table):
     return 0
 
 
-COMMANDS = {"scaling": measure_scaling, "gpu": measure_gpu, "bvh": measure_bvh}
+COMMANDS = {"scaling": measure_scaling, "gpu": measure_gpu, "kernel": measure_kernel, "bvh": measure_bvh}
 
 
 def main(arguments):

@@ -11,6 +11,7 @@ from .places import TOOLS, BenchError, cache
 # Peers are pinned: a figure without its version says nothing.
 TOOLBOX = ["mitsuba==3.9.1", "numpy==2.4.6", "OpenEXR==3.5.3"]
 CYCLES = ["bpy==5.0.1"]
+EMBREE = ["embreex==4.4.0.post1", "numpy==2.4.6"]
 # The wheels of bpy 5.0 are for this version of Python alone.
 CYCLES_PYTHON = "3.11"
 LLVM_OLDEST = 16
@@ -38,9 +39,10 @@ def environment(name, python, packages):
     return folder / "bin" / "python"
 
 
-def run(command, what):
+def run(command, what, variables=None):
     """Runs a command; its output is shown if it fails."""
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False)
+    command = [str(part) for part in command]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=variables)
     if done.returncode != 0:
         raise BenchError(f"{what}:\n{done.stdout}{done.stderr}".rstrip(), 3)
     return done.stdout
@@ -57,6 +59,11 @@ def toolbox():
 def cycles():
     """The interpreter that holds Cycles."""
     return environment("cycles", cycles_python(), CYCLES)
+
+
+def embree():
+    """The interpreter that holds Embree."""
+    return environment("embree", sys.executable, EMBREE)
 
 
 def cycles_python():

@@ -42,22 +42,29 @@ class Etendue:
         self.environment = os.environ | {"LP_NUM_THREADS": str(threads), "RAYON_NUM_THREADS": str(threads)}
         self.about = {}
 
-    def render(self, spp, seed, size, output=None, max_depth=8, **more):
-        """more: flags of `etendue render`, with _ for -. Returns the --json report with seconds at the top."""
-        width, height = size if isinstance(size, tuple) else (size, size)
-        flags = {"spp": spp, "seed": seed, "size": f"{width}x{height}", "max_depth": max_depth, **more}
+    def run(self, flags):
+        """`etendue render` with flags, with _ for -; True stands for a flag without a value."""
         environment = self.scene.parent / "environment.exr"
         if environment.exists():
             flags.setdefault("env", environment)
+        command = [*self.command, "render", str(self.scene), "--quiet"]
+        for flag, value in flags.items():
+            command += [f"--{flag.replace('_', '-')}"] + ([] if value is True else [str(value)])
+        done = subprocess.run(command, env=self.environment, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise BenchError(f"étendue failed ({done.returncode}): {done.stderr.strip()}", 3)
+
+    def write_spirv(self, path, **flags):
+        """The kernel that a render with these flags would run."""
+        self.run(flags | {"spirv": path})
+
+    def render(self, spp, seed, size, output=None, max_depth=8, **more):
+        """more: further flags. Returns the --json report with seconds at the top."""
+        width, height = size if isinstance(size, tuple) else (size, size)
+        flags = {"spp": spp, "seed": seed, "size": f"{width}x{height}", "max_depth": max_depth, **more}
         with tempfile.TemporaryDirectory() as folder:
             report = pathlib.Path(folder) / "report.json"
-            command = [*self.command, "render", str(self.scene), "--quiet", "--json", str(report)]
-            for flag, value in flags.items():
-                command += [f"--{flag.replace('_', '-')}"] + ([] if value is True else [str(value)])
-            command += ["--output", str(output)] if output else []
-            done = subprocess.run(command, env=self.environment, capture_output=True, text=True, check=False)
-            if done.returncode != 0:
-                raise BenchError(f"étendue failed ({done.returncode}): {done.stderr.strip()}", 3)
+            self.run(flags | {"json": report} | ({"output": output} if output else {}))
             answer = json.loads(report.read_text(encoding="utf-8"))
         if answer["non_finite_samples"]:
             raise BenchError(f"étendue drew {answer['non_finite_samples']} samples that are no numbers", 1)

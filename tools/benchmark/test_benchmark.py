@@ -5,9 +5,10 @@ cd tools && python3 -m unittest benchmark.test_benchmark
 
 import math
 import random
+import struct
 import unittest
 
-from . import camera, plot, statistics
+from . import camera, plot, spirv, statistics
 
 
 def apply(matrix, vector):
@@ -97,6 +98,48 @@ class Plots(unittest.TestCase):
 
     def test_a_constant_has_an_axis(self):
         self.assertTrue(plot.Axis([5.0, 5.0], 0, 1).ticks())
+
+
+def instruction(code, *operands):
+    return [len(operands) + 1 << 16 | code, *operands]
+
+
+def name(number, text):
+    raw = text.encode() + b"\0"
+    return instruction(5, number, *struct.unpack(f"={(len(raw) + 3) // 4}I", raw.ljust((len(raw) + 3) // 4 * 4, b"\0")))
+
+
+class Spirv(unittest.TestCase):
+    """A function `inner` loads a vec4 from a buffer and adds it to itself; `main` calls it twice and branches."""
+
+    def setUp(self):
+        words = [spirv.MAGIC, 0x10300, 0, 100, 0, *name(20, "inner"), *name(30, "main")]
+        words += instruction(22, 1, 32) + instruction(23, 2, 1, 4)  # float, vec4
+        words += instruction(32, 3, 12, 2) + instruction(59, 3, 10, 12)  # a variable in a storage buffer
+        words += instruction(21, 4, 32, 0) + instruction(43, 4, 5, 7)  # uint 7
+        words += instruction(28, 6, 1, 5) + instruction(32, 7, 4, 6) + instruction(59, 7, 11, 4)  # workgroup float[7]
+        words += instruction(54, 2, 20, 0, 9) + instruction(248, 21)
+        words += instruction(61, 2, 22, 10) + instruction(129, 2, 23, 22, 22) + instruction(12, 2, 24, 8, 31, 23)
+        words += instruction(254, 24) + instruction(56)
+        words += instruction(54, 2, 30, 0, 9) + instruction(248, 31)
+        words += instruction(57, 2, 32, 20) + instruction(57, 2, 33, 20) + instruction(250, 40, 31, 31)
+        words += instruction(56)
+        self.module = spirv.Module(struct.pack(f"={len(words)}I", *words))
+
+    def test_calls_and_vectors_are_counted_through(self):
+        inner = self.module.count(self.module.function("inner"))
+        self.assertEqual(inner, {"load buffer": 1, "load buffer bytes": 16, "float": 4, "transcendental": 4})
+        main = self.module.count(self.module.function("main"))
+        twice = {key: 2 * value for key, value in inner.items()}
+        self.assertEqual(main, {**twice, "branch": 1})
+
+    def test_bytes_of_variables(self):
+        self.assertEqual(self.module.variable_bytes("workgroup"), 28)
+        self.assertEqual(self.module.variable_bytes("private"), 0)
+
+    def test_another_file_is_refused(self):
+        with self.assertRaises(ValueError):
+            spirv.Module(b"glTF" * 8)
 
 
 if __name__ == "__main__":

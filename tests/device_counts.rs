@@ -1,0 +1,107 @@
+//! What `--stats` counts on the device: the same elements that the traversal on the host looks at.
+
+mod accel_common;
+mod device_common;
+
+use accel_common::{LIST, Random, TREE, build, cube, nasty_ray, soup, sphere};
+use device_common::{ELEMENTS, Setup, device, rounds_as_the_host, upload};
+use etendue::accel::{Bvh, Steps};
+use etendue::geometry::Ray;
+use etendue::render::layout::ElementCounts;
+use glam::Vec3;
+
+const RAYS: usize = 4096;
+/// Binding of the sums.
+const ELEMENT_COUNTS: u32 = 9;
+
+fn on_the_host(bvh: &Bvh, ray: &Ray) -> [u32; 4] {
+    let counted = |any_hit| {
+        let mut steps = Steps::default();
+        bvh.trace(ray, any_hit, &mut steps);
+        [steps.nodes as u32, steps.pairs as u32]
+    };
+    let (closest, any) = (counted(false), counted(true));
+    [closest[0], closest[1], any[0], any[1]]
+}
+
+fn on_the_device(bvh: &Bvh, rays: &[Ray]) -> Vec<[u32; 4]> {
+    let inputs: Vec<[[f32; 4]; 2]> = rays
+        .iter()
+        .map(|r| {
+            let (o, d) = (r.origin.extend(r.t_max), r.direction.extend(0.0));
+            [o.to_array(), d.to_array()]
+        })
+        .collect();
+    let elements = upload("elements", &bvh.elements);
+    let setup = Setup::new().on(&["COUNT_RAYS"]).structure(bvh);
+    let kernel = setup.kernel("counts", "traversal");
+    let count = rays.len();
+    kernel.run(
+        count as u32,
+        [0; 3],
+        &inputs,
+        count,
+        &[(ELEMENTS, &elements)],
+    )
+}
+
+/// Where the device rounds otherwise, one ray in a hundred may go another way.
+fn check(name: &str, mesh: &[[Vec3; 3]], list_limit: usize) {
+    let bvh = build(mesh, list_limit);
+    let mut random = Random(7);
+    let rays: Vec<Ray> = (0..RAYS).map(|_| nasty_ray(mesh, &mut random)).collect();
+    let found = on_the_device(&bvh, &rays);
+    let others = rays.iter().zip(&found);
+    let others = others.filter(|(ray, counts)| on_the_host(&bvh, ray) != **counts);
+    let allowed = if rounds_as_the_host() { 0 } else { RAYS / 100 };
+    let count = others.count();
+    assert!(
+        count <= allowed,
+        "{name}: {count} of {RAYS} rays have other counts"
+    );
+    let sum: u64 = found.iter().flatten().map(|&n| u64::from(n)).sum();
+    assert!(sum > RAYS as u64, "{name}: {sum} elements for all rays");
+}
+
+#[test]
+fn the_device_counts_what_the_host_looks_at() {
+    check("soup", &soup(1000, 0.2, 1), TREE);
+    check("sphere", &sphere(24), TREE);
+    check("cube, a list", &cube(1), LIST);
+}
+
+#[test]
+fn a_list_counts_all_its_pairs_and_no_node() {
+    let mesh = cube(1);
+    let bvh = build(&mesh, LIST);
+    let pairs = bvh.elements.len() as u32;
+    let ray = nasty_ray(&mesh, &mut Random(3));
+    assert_eq!(on_the_device(&bvh, &[ray]), [[0, pairs, 0, pairs]]);
+}
+
+#[test]
+fn the_sums_carry_beyond_32_bits() {
+    const LANES: u32 = 1000;
+    let (nodes, pairs) = (u32::MAX - 5, 0x4000_0001);
+    let sums = upload("element counts", &[ElementCounts::default()]);
+    let kernel = Setup::new().on(&["COUNT_RAYS"]).kernel("counts", "total");
+    let others = [(ELEMENT_COUNTS, &sums)];
+    kernel.run::<_, [u32; 4]>(
+        LANES,
+        [nodes, pairs, 0],
+        &[[0_f32; 4]],
+        LANES as usize,
+        &others,
+    );
+    let read: Vec<ElementCounts> = device().read(&sums, 0, 1).expect("the sums");
+    let wide = |low: u32, high: u32| u64::from(high) << 32 | u64::from(low);
+    let n = u64::from(LANES);
+    assert_eq!(
+        wide(read[0].nodes_low, read[0].nodes_high),
+        n * u64::from(nodes)
+    );
+    assert_eq!(
+        wide(read[0].pairs_low, read[0].pairs_high),
+        n * u64::from(pairs)
+    );
+}
