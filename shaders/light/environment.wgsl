@@ -16,12 +16,8 @@ fn environment_light(normal: vec3f, direction: vec3f) -> EnvironmentLight {
     let sin_theta = length(d.xz);
     let u = 0.5 + arctan2(d.z, d.x) * INV_2PI;
     let v = arctan2(sin_theta, d.y) * INV_PI;
-    let q = vec2f(u, v) * environment_size();
-    let column = min(floor_to_u32(q.x), frame.environment_width - 1u);
-    let row = min(floor_to_u32(q.y), frame.environment_height - 1u);
-    let cell = vec2u(column, row);
-    let texel = environment_lookup(EnvironmentPoint(cell, q - vec2f(cell)));
-    return EnvironmentLight(frame.environment_radiance * texel.rgb, environment_pdf(texel.w, sin_theta));
+    let cell = environment_cell(environment_at(vec2f(u, v)));
+    return EnvironmentLight(frame.environment_radiance * cell.radiance, environment_pdf(cell.density, sin_theta));
 }
 
 fn environment_radiance(direction: vec3f) -> vec3f {
@@ -40,16 +36,18 @@ fn environment_sample(s: Surface, bits: vec2u) -> LightSample {
         }
         return sample;
     }
-    let point = environment_choose(bits);
-    let texel = environment_lookup(point);
-    let uv = (vec2f(point.texel) + point.inside) / environment_size();
+    let chosen = environment_choose(bits);
+    let corners = environment_corners(chosen.cell);
+    let inside = environment_warp(corners, chosen);
+    let cell = environment_interpolate(corners, inside);
+    let uv = (vec2f(chosen.cell) + inside + vec2f(0.5, -0.5)) / environment_size();
     // cos and sin of theta = pi v, and of phi = 2 pi u - pi.
     let theta = cos_sin_2pi(0.5 * uv.y);
     let phi = -cos_sin_2pi(uv.x);
     sample.wi = environment_to_world(vec3f(theta.y * phi.x, theta.x, theta.y * phi.y));
-    sample.pdf = environment_pdf(texel.w, theta.y);
+    sample.pdf = environment_pdf(cell.density, theta.y);
     if (sample.pdf > 0.0) {
-        sample.weight = frame.environment_radiance * texel.rgb / sample.pdf;
+        sample.weight = frame.environment_radiance * cell.radiance / sample.pdf;
     }
     return sample;
 }
@@ -59,11 +57,21 @@ fn environment_size() -> vec2f {
     return vec2f(f32(frame.environment_width), f32(frame.environment_height));
 }
 
+// A point of a cell between the centres of four texels. The first row of cells begins half a cell
+// above the picture, the last ends half a cell below it, the last column ends in the first texel's.
 struct EnvironmentPoint {
     // Column and row.
-    texel: vec2u,
-    // Where in the texel, from 0 to 1.
+    cell: vec2u,
+    // Where in the cell, from 0 to 1.
     inside: vec2f,
+}
+
+fn environment_at(uv: vec2f) -> EnvironmentPoint {
+    let q = uv * environment_size() + vec2f(-0.5, 0.5);
+    let next = min(floor_to_u32(floor(q.x) + 1.0), frame.environment_width);
+    let column = select(next, frame.environment_width, next == 0u) - 1u;
+    let row = min(floor_to_u32(q.y), frame.environment_height);
+    return EnvironmentPoint(vec2u(column, row), q - floor(q));
 }
 
 // The row by the marginal distribution, then the column by the row's own (Pharr, Jakob and
@@ -71,9 +79,9 @@ struct EnvironmentPoint {
 // points stay so. The low bits of the other number fill in what a rare row or column lacks.
 fn environment_choose(bits: vec2u) -> EnvironmentPoint {
     let width = frame.environment_width;
-    let height = frame.environment_height;
-    let row = environment_invert(0u, height, bits.y >> 1u, bits.x & 0xffffu);
-    let column = environment_invert(height + row.index * width, width, bits.x >> 1u, bits.y & 0xffffu);
+    let rows = frame.environment_height + 1u;
+    let row = environment_invert(0u, rows, bits.y >> 1u, bits.x & 0xffffu);
+    let column = environment_invert(rows + row.index * width, width, bits.x >> 1u, bits.y & 0xffffu);
     return EnvironmentPoint(vec2u(column.index, row.index), vec2f(column.inside, row.inside));
 }
 
@@ -105,34 +113,65 @@ fn environment_invert(first: u32, count: u32, number: u32, low_bits: u32) -> Env
     return EnvironmentInterval(index, min(offset / f32(upper - lower), ONE_BELOW));
 }
 
-// From the density over (u, v) / 2 pi^2: d(omega) = 2 pi^2 sin(theta) du dv.
+// The texels at the corners of a cell, and the cell's mean density over (u, v) / 2 pi^2.
+struct EnvironmentCorners {
+    top_left: vec3f,
+    top_right: vec3f,
+    bottom_left: vec3f,
+    bottom_right: vec3f,
+    density: f32,
+}
+
+fn environment_corners(cell: vec2u) -> EnvironmentCorners {
+    let width = frame.environment_width;
+    let right = select(cell.x + 1u, 0u, cell.x + 1u == width);
+    let top = cell.y * width;
+    let own = load_environment_texel(top + cell.x);
+    return EnvironmentCorners(
+        own.rgb,
+        load_environment_texel(top + right).rgb,
+        load_environment_texel(top + width + cell.x).rgb,
+        load_environment_texel(top + width + right).rgb,
+        own.w,
+    );
+}
+
+// A uniform point of a cell to one in proportion to its luminance, which is bilinear.
+fn environment_warp(corners: EnvironmentCorners, point: EnvironmentPoint) -> vec2f {
+    let top = vec2f(luminance(corners.top_left), luminance(corners.top_right));
+    let bottom = vec2f(luminance(corners.bottom_left), luminance(corners.bottom_right));
+    let y = sample_linear(point.inside.y, top.x + top.y, bottom.x + bottom.y);
+    let across = mix(top, bottom, y);
+    let x = sample_linear(point.inside.x, across.x, across.y);
+    // At the poles only the half of the cell that is in the picture.
+    let from_pole = select(y, 0.5 + 0.5 * y, point.cell.y == 0u);
+    return vec2f(x, select(from_pole, 0.5 * y, point.cell.y == frame.environment_height));
+}
+
+struct EnvironmentValue {
+    radiance: vec3f,
+    // Over (u, v) / 2 pi^2.
+    density: f32,
+}
+
+fn environment_interpolate(c: EnvironmentCorners, inside: vec2f) -> EnvironmentValue {
+    let top = mix(c.top_left, c.top_right, inside.x);
+    let bottom = mix(c.bottom_left, c.bottom_right, inside.x);
+    let radiance = mix(top, bottom, inside.y);
+    let mean = luminance(0.25 * c.top_left + 0.25 * c.top_right + 0.25 * c.bottom_left + 0.25 * c.bottom_right);
+    return EnvironmentValue(radiance, select(0.0, c.density * (luminance(radiance) / mean), mean > 0.0));
+}
+
+fn environment_cell(point: EnvironmentPoint) -> EnvironmentValue {
+    return environment_interpolate(environment_corners(point.cell), point.inside);
+}
+
+// d(omega) = 2 pi^2 sin(theta) du dv.
 fn environment_pdf(density: f32, sin_theta: f32) -> f32 {
     if (sin_theta <= 0.0) {
         return 0.0;
     }
     return density / sin_theta;
-}
-
-// Radiance at a point, and the density of its texel. Bilinear between texel centres; round about
-// along u, up to the pole rows along v.
-fn environment_lookup(point: EnvironmentPoint) -> vec4f {
-    let column = point.texel.x;
-    let row = point.texel.y;
-    let last_column = frame.environment_width - 1u;
-    let last_row = frame.environment_height - 1u;
-    // The neighbours on the point's side of the centre.
-    let before = point.inside < vec2f(0.5);
-    let left = select(column - 1u, last_column, column == 0u);
-    let right = select(column + 1u, 0u, column == last_column);
-    let x = select(right, left, before.x);
-    let y = select(min(row + 1u, last_row), max(row, 1u) - 1u, before.y);
-    let f = abs(point.inside - 0.5);
-    let this_row = row * frame.environment_width;
-    let next_row = y * frame.environment_width;
-    let own = load_environment_texel(this_row + column);
-    let near = mix(own.rgb, load_environment_texel(this_row + x).rgb, f.x);
-    let far = mix(load_environment_texel(next_row + column).rgb, load_environment_texel(next_row + x).rgb, f.x);
-    return vec4f(mix(near, far, f.y), own.w);
 }
 
 // The picture turns with the environment: world to picture turns back.

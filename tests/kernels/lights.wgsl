@@ -56,12 +56,12 @@ fn estimate_environment(@builtin(global_invocation_id) id: vec3u) {
     outputs[id.x] = vec4f(sum / f32(params.z), 0.0);
 }
 
-// Column and row of the texel that a pair of numbers chooses, and where in it.
+// Column and row of the cell that a pair of numbers chooses, and where in it.
 @compute @workgroup_size(64)
 fn invert_environment(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < params.x) {
         let p = environment_choose(bitcast<vec2u>(inputs[2u + id.x].xy));
-        outputs[id.x] = vec4f(f32(p.texel.x), f32(p.texel.y), p.inside);
+        outputs[id.x] = vec4f(f32(p.cell.x), f32(p.cell.y), p.inside);
     }
 }
 
