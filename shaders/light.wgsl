@@ -51,7 +51,7 @@ fn sample_light(s: Surface, sampler: ptr<function, Sampler>) -> LightSample {
     } else if (HAS_PUNCTUAL_LIGHTS && kind == LIGHT_PUNCTUAL) {
         sample = punctual_sample(s, item);
     } else if (HAS_ENVIRONMENT && kind == LIGHT_ENVIRONMENT) {
-        sample = environment_sample(s, vec2f(unit_float(u.x), unit_float(u.y)), sampler);
+        sample = environment_sample(s, u);
     }
     sample.pdf *= light.probability;
     sample.weight /= light.probability;

@@ -80,8 +80,8 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
     (*path).beta = vec3f(0.0);
     if (hit.triangle == NONE) {
         if (HAS_ENVIRONMENT) {
-            let weight = environment_hit_weight(ray.direction, (*path).last);
-            (*path).L += beta * weight * environment_radiance(ray.direction);
+            let light = environment_light((*path).last.normal, ray.direction);
+            (*path).L += beta * environment_hit_weight(light.pdf, (*path).last) * light.radiance;
         }
         return;
     }
@@ -155,7 +155,7 @@ fn surface_hit_weight(s: Surface, last: LastBounce) -> f32 {
     return power_heuristic(last.pdf, pdf);
 }
 
-fn environment_hit_weight(direction: vec3f, last: LastBounce) -> f32 {
+fn environment_hit_weight(pdf: f32, last: LastBounce) -> f32 {
     if (last.alone || !LIGHT_SAMPLES) {
         return 1.0;
     }
@@ -163,5 +163,5 @@ fn environment_hit_weight(direction: vec3f, last: LastBounce) -> f32 {
         return 0.0;
     }
     let choice = lights[frame.environment_light].probability;
-    return power_heuristic(last.pdf, choice * environment_pdf(last.normal, direction));
+    return power_heuristic(last.pdf, choice * pdf);
 }

@@ -1,6 +1,7 @@
 // Texture look-up from storage buffers: exact filtering and wrapping, alike on every device.
 
 #include "bindings.wgsl"
+#include "math/float.wgsl"
 
 // The texture of a slot at a vertex-interpolated coordinate: RGBA, linear.
 fn sample_texture(slot: TextureSlot, uv0: vec2f, uv1: vec2f) -> vec4f {
@@ -11,26 +12,23 @@ fn sample_texture(slot: TextureSlot, uv0: vec2f, uv1: vec2f) -> vec4f {
 }
 
 fn filter_texture(info: Texture, uv: vec2f) -> vec4f {
-    let size = vec2f(f32(info.width), f32(info.height));
+    let size = vec2u(info.width, info.height);
+    let wrap = (vec2u(info.flags) >> vec2u(TEXTURE_WRAP_U_SHIFT, TEXTURE_WRAP_V_SHIFT)) & vec2u(3u);
     // Fold into one period (two if mirrored) while the number is small and still exact.
-    let p = fold_coordinates(info.flags, uv) * size;
+    let p = vec2f(fold_coordinate(wrap.x, uv.x), fold_coordinate(wrap.y, uv.y)) * vec2f(size);
     if (!HAS_LINEAR_FILTER || (info.flags & TEXTURE_LINEAR) == 0u) {
-        let cell = vec2i(floor(p));
-        return load_texel(info, cell.x, cell.y);
+        return load_texel(info, wrap_index(wrap, vec2u(floor_to_u32(p.x), floor_to_u32(p.y)), size));
     }
     let q = p - 0.5;
-    let cell = vec2i(floor(q));
     let f = q - floor(q);
-    let top = mix(load_texel(info, cell.x, cell.y), load_texel(info, cell.x + 1, cell.y), f.x);
-    let bottom = mix(load_texel(info, cell.x, cell.y + 1), load_texel(info, cell.x + 1, cell.y + 1), f.x);
+    // The texels after q's, which are never negative; those before the first wrap by themselves.
+    let next = vec2u(floor_to_u32(floor(q.x) + 1.0), floor_to_u32(floor(q.y) + 1.0));
+    let before_first = select(vec2u(0u), size - 1u, wrap == vec2u(2u));
+    let low = wrap_index(wrap, select(next - 1u, before_first, next == vec2u(0u)), size);
+    let high = wrap_index(wrap, next, size);
+    let top = mix(load_texel(info, low), load_texel(info, vec2u(high.x, low.y)), f.x);
+    let bottom = mix(load_texel(info, vec2u(low.x, high.y)), load_texel(info, high), f.x);
     return mix(top, bottom, f.y);
-}
-
-fn fold_coordinates(flags: u32, uv: vec2f) -> vec2f {
-    return vec2f(
-        fold_coordinate((flags >> TEXTURE_WRAP_U_SHIFT) & 3u, uv.x),
-        fold_coordinate((flags >> TEXTURE_WRAP_V_SHIFT) & 3u, uv.y),
-    );
 }
 
 fn fold_coordinate(wrap: u32, u: f32) -> f32 {
@@ -39,22 +37,18 @@ fn fold_coordinate(wrap: u32, u: f32) -> f32 {
     return select(select(repeated, mirrored, wrap == 1u), clamp(u, -1.0, 2.0), wrap == 0u);
 }
 
-fn wrap_index(wrap: u32, index: i32, size: i32) -> i32 {
-    if (wrap == 2u) {
-        // Clamped, since coordinates may be infinite, and sides beyond 2^24 round.
-        return clamp(index - size * i32(floor((f32(index) + 0.5) / f32(size))), 0, size - 1);
-    }
-    if (wrap == 1u) {
-        let period = index - 2 * size * i32(floor((f32(index) + 0.5) / f32(2 * size)));
-        return clamp(select(period, 2 * size - 1 - period, period >= size), 0, size - 1);
-    }
-    return clamp(index, 0, size - 1);
+// The texel of an index below two periods. Compared rather than divided: lavapipe divides integers
+// lane by lane.
+fn wrap_index(wrap: vec2u, index: vec2u, size: vec2u) -> vec2u {
+    let period = size << (wrap & vec2u(1u));
+    let folded = select(index, index - period, index >= period);
+    let mirrored = select(folded, 2u * size - 1u - folded, folded >= size);
+    // Clamped in all modes, since coordinates may be infinite.
+    return min(select(mirrored, index, wrap == vec2u(0u)), size - 1u);
 }
 
-fn load_texel(info: Texture, x: i32, y: i32) -> vec4f {
-    let column = u32(wrap_index((info.flags >> TEXTURE_WRAP_U_SHIFT) & 3u, x, i32(info.width)));
-    let row = u32(wrap_index((info.flags >> TEXTURE_WRAP_V_SHIFT) & 3u, y, i32(info.height)));
-    let index = row * info.width + column;
+fn load_texel(info: Texture, at: vec2u) -> vec4f {
+    let index = at.y * info.width + at.x;
     if (HAS_16_BIT_TEXTURES && (info.flags & TEXTURE_16_BIT) != 0u) {
         let word = info.first_word + 2u * index;
         return vec4f(unpack2x16unorm(load_texel_word(word)), unpack2x16unorm(load_texel_word(word + 1u)));

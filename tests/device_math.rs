@@ -82,12 +82,14 @@ fn trigonometry_is_accurate() {
 fn neighbours_finiteness_and_high_products_are_exact() {
     let mut random = Random(2);
     let special = [
+        0.0,
         f32::MIN_POSITIVE,
         f32::MAX,
         1.0,
         1f32.next_down(),
         f32::INFINITY,
         f32::NAN,
+        4_294_967_296.0,
     ];
     let extremes = [
         0u32,
@@ -111,8 +113,18 @@ fn neighbours_finiteness_and_high_products_are_exact() {
             .flat_map(|x| [*x, -*x])
             .map(|x| [0, 0, 0, x.to_bits()]),
     );
-    inputs.extend((0..SAMPLES).map(|_| {
-        let any = any_float(&mut random);
+    // Halves and the floats about them, up to the largest integer parts.
+    for exponent in 0..26 {
+        let power = 2f32.powi(exponent);
+        let about = |x: f32| [x.next_down(), x, x.next_up()];
+        let about = [power - 0.5, power, power + 0.5, power + 1.0, 1.5 * power].map(about);
+        inputs.extend(about.as_flattened().iter().map(|x| [0, 0, 0, x.to_bits()]));
+    }
+    inputs.extend((0..SAMPLES).map(|i| {
+        let any = match i % 2 {
+            0 => any_float(&mut random),
+            _ => (random.unit() * 20_000_000.0) as f32,
+        };
         [random.bits() as u32, random.bits() as u32, 0, any.to_bits()]
     }));
     for (input, result) in inputs.iter().zip(run_functions(&inputs)) {
@@ -121,10 +133,20 @@ fn neighbours_finiteness_and_high_products_are_exact() {
         assert_eq!(high, (product >> 32) as u32, "{input:x?}");
         let x = f32::from_bits(input[3]);
         assert_eq!(finite == 1, x.is_finite(), "{x}");
+        assert_eq!(result[0][3], integer_part(x), "{x}");
         if x.is_finite() {
             assert!(same_or_flushed(up, next_normal(x)), "{x}");
             assert!(same_or_flushed(down, -next_normal(-x)), "{x}");
         }
+    }
+}
+
+/// What floor_to_u32 promises.
+fn integer_part(x: f32) -> u32 {
+    if (0.0..16_777_216.0).contains(&x) {
+        x as u32
+    } else {
+        0
     }
 }
 

@@ -254,19 +254,39 @@ fn look_ups_agree_with_the_reference() {
     assert_eq!(wrong, 0, "of {all}");
 }
 
-/// Negative controls: a mirror that repeats its edge texel's neighbour, half a texel's shift.
+/// Negative controls: a mirror that repeats its edge texel's neighbour, half a texel's shift, ends
+/// that do not wrap.
 #[test]
 fn wrong_look_ups_are_noticed() {
     let file = "texture.wgsl";
     for (from, to) in [
-        ("2 * size - 1 - period", "2 * size - 2 - period"),
+        ("2u * size - 1u - folded", "2u * size - 2u - folded"),
         ("let q = p - 0.5;", "let q = p;"),
-        (
-            "i32(floor((f32(index) + 0.5) / f32(size)))",
-            "(index / size)",
-        ),
+        ("before_first, next == vec2u(0u)", "next, next == vec2u(0u)"),
+        ("index - period, index >=", "index, index >="),
     ] {
         assert!(run(Setup::new().patched(file, from, to)).0 > 100, "{to}");
+    }
+}
+
+#[test]
+fn sides_that_coordinates_cannot_resolve_are_refused() {
+    for (width, accepted) in [(1 << 22, true), ((1 << 22) + 1, false)] {
+        let mut scene = device_common::scenes::empty_scene();
+        scene.images.push(Image {
+            name: String::new(),
+            width,
+            height: 1,
+            texels: Texels::Rgba8(vec![[0; 4]; width as usize]),
+        });
+        let prepared = Prepared::new(&scene, 0, &Default::default());
+        let message = prepared.err().map(|e| e.to_string()).unwrap_or_default();
+        assert_eq!(message.is_empty(), accepted, "{message}");
+        assert_eq!(
+            message.contains("4194305 texels along a side"),
+            !accepted,
+            "{message}"
+        );
     }
 }
 

@@ -1,95 +1,177 @@
 // Light from infinitely far away: constant, or an equirectangular picture,
 // u = 0.5 + atan2(d.z, d.x) / 2 pi, v = acos(d.y) / pi from the top row.
 
-fn environment_radiance(direction: vec3f) -> vec3f {
-    if (!HAS_ENVIRONMENT_IMAGE) {
-        return frame.environment_radiance;
-    }
-    return frame.environment_radiance * environment_lookup(environment_uv(direction));
+struct EnvironmentLight {
+    radiance: vec3f,
+    // Density over solid angle with which environment_sample returns the direction.
+    pdf: f32,
 }
 
-// Density over solid angle with which environment_sample returns `direction` at a surface with
-// this shading normal.
-fn environment_pdf(normal: vec3f, direction: vec3f) -> f32 {
+// What comes from `direction` to a surface with this shading normal.
+fn environment_light(normal: vec3f, direction: vec3f) -> EnvironmentLight {
     if (!HAS_ENVIRONMENT_IMAGE) {
-        return pdf_cosine_hemisphere(dot(direction, normal));
+        return EnvironmentLight(frame.environment_radiance, pdf_cosine_hemisphere(dot(direction, normal)));
     }
     let d = environment_from_world(direction);
-    let uv = environment_uv(direction);
-    return environment_texel_pdf(environment_texel(uv), length(d.xz));
+    let sin_theta = length(d.xz);
+    let u = 0.5 + arctan2(d.z, d.x) * INV_2PI;
+    let v = arctan2(sin_theta, d.y) * INV_PI;
+    let cell = environment_cell(environment_at(vec2f(u, v)));
+    return EnvironmentLight(frame.environment_radiance * cell.radiance, environment_pdf(cell.density, sin_theta));
 }
 
-fn environment_sample(s: Surface, u: vec2f, sampler: ptr<function, Sampler>) -> LightSample {
+fn environment_radiance(direction: vec3f) -> vec3f {
+    return environment_light(vec3f(0.0), direction).radiance;
+}
+
+fn environment_sample(s: Surface, bits: vec2u) -> LightSample {
     var sample = no_light_sample();
     sample.at_infinity = true;
     if (!HAS_ENVIRONMENT_IMAGE) {
+        let u = vec2f(unit_float(bits.x), unit_float(bits.y));
         sample.wi = to_world(s.shading, sample_cosine_hemisphere(u));
-        sample.pdf = environment_pdf(s.shading.z, sample.wi);
+        sample.pdf = pdf_cosine_hemisphere(dot(sample.wi, s.shading.z));
         if (sample.pdf > 0.0) {
             sample.weight = frame.environment_radiance / sample.pdf;
         }
         return sample;
     }
-    let texel = environment_choose_texel(next_2d_bits(sampler));
-    let size = vec2f(f32(frame.environment_width), f32(frame.environment_height));
-    let column = texel % frame.environment_width;
-    let row = texel / frame.environment_width;
-    let uv = (vec2f(f32(column), f32(row)) + u) / size;
+    let chosen = environment_choose(bits);
+    let corners = environment_corners(chosen.cell);
+    let inside = environment_warp(corners, chosen);
+    let cell = environment_interpolate(corners, inside);
+    let uv = (vec2f(chosen.cell) + inside + vec2f(0.5, -0.5)) / environment_size();
     // cos and sin of theta = pi v, and of phi = 2 pi u - pi.
     let theta = cos_sin_2pi(0.5 * uv.y);
     let phi = -cos_sin_2pi(uv.x);
     sample.wi = environment_to_world(vec3f(theta.y * phi.x, theta.x, theta.y * phi.y));
-    sample.pdf = environment_texel_pdf(texel, theta.y);
+    sample.pdf = environment_pdf(cell.density, theta.y);
     if (sample.pdf > 0.0) {
-        sample.weight = frame.environment_radiance * environment_lookup(uv) / sample.pdf;
+        sample.weight = frame.environment_radiance * cell.radiance / sample.pdf;
     }
     return sample;
 }
 
-// A texel, in proportion to its stored probability.
-fn environment_choose_texel(bits: vec2u) -> u32 {
-    let index = multiply_high(bits.x, frame.environment_width * frame.environment_height);
-    let entry = load_environment_alias(index);
-    return select(entry.y, index, unit_float(bits.y) < bitcast<f32>(entry.x));
+// Columns and rows.
+fn environment_size() -> vec2f {
+    return vec2f(f32(frame.environment_width), f32(frame.environment_height));
 }
 
-// Inside a texel the density is uniform over (u, v), d(omega) = 2 pi^2 sin(theta) du dv.
-fn environment_texel_pdf(texel: u32, sin_theta: f32) -> f32 {
+// A point of a cell between the centres of four texels. The first row of cells begins half a cell
+// above the picture, the last ends half a cell below it, the last column ends in the first texel's.
+struct EnvironmentPoint {
+    // Column and row.
+    cell: vec2u,
+    // Where in the cell, from 0 to 1.
+    inside: vec2f,
+}
+
+fn environment_at(uv: vec2f) -> EnvironmentPoint {
+    let q = uv * environment_size() + vec2f(-0.5, 0.5);
+    let next = min(floor_to_u32(floor(q.x) + 1.0), frame.environment_width);
+    let column = select(next, frame.environment_width, next == 0u) - 1u;
+    let row = min(floor_to_u32(q.y), frame.environment_height);
+    return EnvironmentPoint(vec2u(column, row), q - floor(q));
+}
+
+// The row by the marginal distribution, then the column by the row's own (Pharr, Jakob and
+// Humphreys 2023, section A.5.2). Both rise with the number that chooses, so that well-spread
+// points stay so. The low bits of the other number fill in what a rare row or column lacks.
+fn environment_choose(bits: vec2u) -> EnvironmentPoint {
+    let width = frame.environment_width;
+    let rows = frame.environment_height + 1u;
+    let row = environment_invert(0u, rows, bits.y >> 1u, bits.x & 0xffffu);
+    let column = environment_invert(rows + row.index * width, width, bits.x >> 1u, bits.y & 0xffffu);
+    return EnvironmentPoint(vec2u(column.index, row.index), vec2f(column.inside, row.inside));
+}
+
+struct EnvironmentInterval {
+    index: u32,
+    // Where in the interval, from 0 to 1.
+    inside: f32,
+}
+
+// Inverts a cumulative distribution of `count` intervals, whose lower ends are the words from
+// `first` on, in 2^-31: finds the one that holds `number`. An empty one is never found.
+fn environment_invert(first: u32, count: u32, number: u32, low_bits: u32) -> EnvironmentInterval {
+    var index = 0u;
+    var lower = 0u;
+    var upper = 0x80000000u;
+    // As many rounds for every lane; the last bounds met on both sides are the interval's.
+    for (var length = count; length > 1u; length -= length >> 1u) {
+        if (count_step()) {
+            break;
+        }
+        let middle = index + (length >> 1u);
+        let bound = load_environment_cdf(first + middle);
+        let above = bound <= number;
+        index = select(index, middle, above);
+        lower = select(lower, bound, above);
+        upper = select(min(upper, bound), upper, above);
+    }
+    let offset = f32(number - lower) + f32(low_bits) * 1.52587890625e-5;
+    return EnvironmentInterval(index, min(offset / f32(upper - lower), ONE_BELOW));
+}
+
+// The texels at the corners of a cell, and the cell's mean density over (u, v) / 2 pi^2.
+struct EnvironmentCorners {
+    top_left: vec3f,
+    top_right: vec3f,
+    bottom_left: vec3f,
+    bottom_right: vec3f,
+    density: f32,
+}
+
+fn environment_corners(cell: vec2u) -> EnvironmentCorners {
+    let width = frame.environment_width;
+    let right = select(cell.x + 1u, 0u, cell.x + 1u == width);
+    let top = cell.y * width;
+    let own = load_environment_texel(top + cell.x);
+    return EnvironmentCorners(
+        own.rgb,
+        load_environment_texel(top + right).rgb,
+        load_environment_texel(top + width + cell.x).rgb,
+        load_environment_texel(top + width + right).rgb,
+        own.w,
+    );
+}
+
+// A uniform point of a cell to one in proportion to its luminance, which is bilinear.
+fn environment_warp(corners: EnvironmentCorners, point: EnvironmentPoint) -> vec2f {
+    let top = vec2f(luminance(corners.top_left), luminance(corners.top_right));
+    let bottom = vec2f(luminance(corners.bottom_left), luminance(corners.bottom_right));
+    let y = sample_linear(point.inside.y, top.x + top.y, bottom.x + bottom.y);
+    let across = mix(top, bottom, y);
+    let x = sample_linear(point.inside.x, across.x, across.y);
+    // At the poles only the half of the cell that is in the picture.
+    let from_pole = select(y, 0.5 + 0.5 * y, point.cell.y == 0u);
+    return vec2f(x, select(from_pole, 0.5 * y, point.cell.y == frame.environment_height));
+}
+
+struct EnvironmentValue {
+    radiance: vec3f,
+    // Over (u, v) / 2 pi^2.
+    density: f32,
+}
+
+fn environment_interpolate(c: EnvironmentCorners, inside: vec2f) -> EnvironmentValue {
+    let top = mix(c.top_left, c.top_right, inside.x);
+    let bottom = mix(c.bottom_left, c.bottom_right, inside.x);
+    let radiance = mix(top, bottom, inside.y);
+    let mean = luminance(0.25 * c.top_left + 0.25 * c.top_right + 0.25 * c.bottom_left + 0.25 * c.bottom_right);
+    return EnvironmentValue(radiance, select(0.0, c.density * (luminance(radiance) / mean), mean > 0.0));
+}
+
+fn environment_cell(point: EnvironmentPoint) -> EnvironmentValue {
+    return environment_interpolate(environment_corners(point.cell), point.inside);
+}
+
+// d(omega) = 2 pi^2 sin(theta) du dv.
+fn environment_pdf(density: f32, sin_theta: f32) -> f32 {
     if (sin_theta <= 0.0) {
         return 0.0;
     }
-    let count = f32(frame.environment_width * frame.environment_height);
-    return load_environment_texel(texel).w * count / (2.0 * PI * PI * sin_theta);
-}
-
-fn environment_uv(direction: vec3f) -> vec2f {
-    let d = environment_from_world(direction);
-    return vec2f(0.5 + arctan2(d.z, d.x) * INV_2PI, arctan2(length(d.xz), d.y) * INV_PI);
-}
-
-fn environment_texel(uv: vec2f) -> u32 {
-    let column = min(u32(max(uv.x, 0.0) * f32(frame.environment_width)), frame.environment_width - 1u);
-    let row = min(u32(max(uv.y, 0.0) * f32(frame.environment_height)), frame.environment_height - 1u);
-    return row * frame.environment_width + column;
-}
-
-// Bilinear between texel centres; round about along u, up to the pole rows along v.
-fn environment_lookup(uv: vec2f) -> vec3f {
-    let width = i32(frame.environment_width);
-    let height = i32(frame.environment_height);
-    let q = uv * vec2f(f32(width), f32(height)) - 0.5;
-    let f = q - floor(q);
-    let x0 = clamp((i32(floor(q.x)) + width) % width, 0, width - 1);
-    let x1 = (x0 + 1) % width;
-    let y0 = clamp(i32(floor(q.y)), 0, height - 1);
-    let y1 = clamp(i32(floor(q.y)) + 1, 0, height - 1);
-    let top = mix(environment_at(x0, y0, width), environment_at(x1, y0, width), f.x);
-    let bottom = mix(environment_at(x0, y1, width), environment_at(x1, y1, width), f.x);
-    return mix(top, bottom, f.y);
-}
-
-fn environment_at(x: i32, y: i32, width: i32) -> vec3f {
-    return load_environment_texel(u32(y * width + x)).rgb;
+    return density / sin_theta;
 }
 
 // The picture turns with the environment: world to picture turns back.

@@ -41,6 +41,18 @@ fn multiply_high(a: u32, b: u32) -> u32 {
     return a_high * b_high + (middle >> 16u) + (carry >> 16u);
 }
 
+// The integer part of x for 0 <= x < 2^24; 0 for all else, NaN and infinities included. A conversion
+// would do, but naga guards it by a clamp, and lavapipe converts lane by lane.
+fn floor_to_u32(x: f32) -> u32 {
+    let bits = bitcast<u32>(x);
+    let significand = (bits & 0x7fffffu) | 0x800000u;
+    // The exponent of 2^23 shifts by nothing. Larger ones, and those with a sign, wrap around.
+    return significand >> min(150u - (bits >> 23u), 31u);
+}
+
+// The largest float below 1.
+const ONE_BELOW: f32 = 0.999999940395355224609375;
+
 // A float in [0, 1), never 1, from the top 24 bits.
 fn unit_float(bits: u32) -> f32 {
     return f32(bits >> 8u) * 5.9604644775390625e-8;

@@ -56,6 +56,19 @@ fn sample_triangle_uniform(u: vec2f) -> vec3f {
     return vec3f(b0, b1, max(0.0, 1.0 - b0 - b1));
 }
 
+// Density over [0, 1] that goes from `a` to `b`, up to a factor, linearly; neither is negative
+// (Pharr, Jakob and Humphreys 2023, section A.4.1; divided by the sum, so that no square overflows).
+fn sample_linear(u: f32, a: f32, b: f32) -> f32 {
+    let sum = a + b;
+    if (sum <= 0.0) {
+        return u;
+    }
+    let from_density = a / sum;
+    let to_density = b / sum;
+    let root = from_density + sqrt(mix(square(from_density), square(to_density), u));
+    return select(0.0, min(u / root, 1.0), root > 0.0);
+}
+
 // Weight of a sample of density `pdf` where another technique has density `other`
 // (Veach 1997, power heuristic with exponent 2, in a form that does not overflow).
 fn power_heuristic(pdf: f32, other: f32) -> f32 {

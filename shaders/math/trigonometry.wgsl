@@ -3,16 +3,17 @@
 
 #include "math/constants.wgsl"
 
-// (cos, sin) of 2 pi u; the reduction to [-pi/4, pi/4] is exact for |u| < 2^21.
+// (cos, sin) of 2 pi u for |u| < 2^20, where the reduction to [-pi/4, pi/4] is exact.
 fn cos_sin_2pi(u: f32) -> vec2f {
     let quarter = floor(u * 4.0 + 0.5);
     let x = (u - quarter * 0.25) * (2.0 * PI);
     let x2 = x * x;
     let s = x * (1.0 + x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0 + x2 * (-1.0 / 5040.0 + x2 / 362880.0))));
     let c = 1.0 + x2 * (-0.5 + x2 * (1.0 / 24.0 + x2 * (-1.0 / 720.0 + x2 * (1.0 / 40320.0 - x2 / 3628800.0))));
-    let quadrant = i32(quarter) & 3;
-    let swapped = select(vec2f(c, s), vec2f(-s, c), (quadrant & 1) == 1);
-    return select(swapped, -swapped, (quadrant & 2) == 2);
+    // In the last bits of a sum whose unit in the last place is 1.
+    let quadrant = bitcast<u32>(quarter + 12582912.0);
+    let swapped = select(vec2f(c, s), vec2f(-s, c), (quadrant & 1u) == 1u);
+    return select(swapped, -swapped, (quadrant & 2u) == 2u);
 }
 
 // Angle of the vector (x, y) in (-pi, pi]; 0 for the null vector.

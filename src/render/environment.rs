@@ -1,48 +1,46 @@
-//! The environment as the device holds it: texels with their probabilities, and an alias table.
+//! The environment as the device holds it: texels with densities, and the cumulative distributions
+//! by which a cell between texels is found.
+
+use std::f64::consts::PI;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
-use super::alias::alias_table;
+use super::cdf::{fixed_point_cdf, probabilities};
 use crate::scene::EnvironmentImage;
 
 /// Texels and distribution of an equirectangular environment.
+///
+/// What is chosen is a cell between the centres of four texels, in which radiance is bilinear: as
+/// many columns of cells as of texels, the last between the last and the first, and one row more,
+/// the first and the last of half a texel, at the poles, where radiance depends on the column alone.
 #[derive(Debug, Clone, Default)]
 pub struct EnvironmentTable {
-    /// RGB radiance, and the probability that the texel is chosen.
+    /// RGB radiance, and the mean density over (u, v) with which points of the cell to the right
+    /// and below are drawn, over 2π². The first and the last row are there twice, as the poles' own.
     pub texels: Vec<[f32; 4]>,
-    /// Bits of the alias threshold, and the alias.
-    pub alias: Vec<[u32; 2]>,
+    /// Lower ends of the intervals, in 2⁻³¹: of the rows of cells, then in each row of its columns.
+    /// Empty if no texel sheds light.
+    pub cdf: Vec<u32>,
     /// Mean radiance over the sphere.
     pub mean: DVec3,
 }
 
 impl EnvironmentTable {
-    /// Builds the distribution in f64. A texel's weight is the luminance that bilinear look-up
-    /// gives on average inside of it, times its solid angle: zero only where the radiance is.
+    /// Builds the distribution in f64. A cell's weight is its mean luminance times its solid
+    /// angle: zero only where the radiance is.
     pub fn new(image: &EnvironmentImage) -> Self {
-        let weights = weights(image);
-        let mean = mean_radiance(image);
-        let entries = alias_table(&weights).unwrap_or_default();
-        let texels = image
-            .texels
-            .iter()
-            .enumerate()
-            .map(|(i, &[r, g, b])| [r, g, b, entries.get(i).map_or(0.0, |e| e.probability)])
-            .collect();
-        let alias = entries
-            .iter()
-            .map(|e| [e.threshold.to_bits(), e.alias])
-            .collect();
+        let cdf = cdf(image);
         Self {
-            texels,
-            alias,
-            mean,
+            texels: texels(image, &cdf),
+            cdf,
+            mean: mean_radiance(image),
         }
     }
 
     /// Whether it sheds any light.
     pub fn is_black(&self) -> bool {
-        self.alias.is_empty()
+        self.cdf.is_empty()
     }
 }
 
@@ -52,25 +50,73 @@ fn luminance([r, g, b]: [f32; 3]) -> f64 {
 
 /// Sine of the polar angle in the middle of a row, to which the solid angle of its texels is proportional.
 fn sin_theta(row: usize, height: usize) -> f64 {
-    (std::f64::consts::PI * (row as f64 + 0.5) / height as f64).sin()
+    (PI * (row as f64 + 0.5) / height as f64).sin()
 }
 
-fn weights(image: &EnvironmentImage) -> Vec<f64> {
+/// Where a row of cells begins and ends, in rows of texels from the top.
+fn row_span(row: usize, height: usize) -> (f64, f64) {
+    let middle = row as f64;
+    ((middle - 0.5).max(0.0), (middle + 0.5).min(height as f64))
+}
+
+/// The marginal distribution of the rows, then the rows' own.
+fn cdf(image: &EnvironmentImage) -> Vec<u32> {
+    let (width, rows) = (image.width, image.height + 1);
+    let mut cdf = vec![0; rows + width * rows];
+    let (marginal, conditional) = cdf.split_at_mut(rows);
+    let sums: Vec<f64> = conditional
+        .par_chunks_mut(width)
+        .enumerate()
+        .map(|(row, ends)| fixed_point_cdf(&row_weights(image, row), ends))
+        .collect();
+    if fixed_point_cdf(&sums, marginal) > 0.0 {
+        cdf
+    } else {
+        Vec::new()
+    }
+}
+
+fn row_weights(image: &EnvironmentImage, row: usize) -> Vec<f64> {
     let (width, height) = (image.width, image.height);
+    let (above, below) = (row.saturating_sub(1), row.min(height - 1));
     let at = |x: usize, y: usize| luminance(image.texels[y * width + x]);
-    // The mean of a bilinear interpolant over a texel weighs neighbours 1 : 6 : 1 in each direction.
-    let row_mean = |x: usize, y: usize| {
-        let (left, right) = ((x + width - 1) % width, (x + 1) % width);
-        (at(left, y) + 6.0 * at(x, y) + at(right, y)) / 8.0
-    };
-    (0..height)
-        .flat_map(|y| (0..width).map(move |x| (x, y)))
-        .map(|(x, y)| {
-            let (above, below) = (y.saturating_sub(1), (y + 1).min(height - 1));
-            let mean = (row_mean(x, above) + 6.0 * row_mean(x, y) + row_mean(x, below)) / 8.0;
-            mean * sin_theta(y, height)
-        })
+    let means: Vec<f64> = (0..width)
+        .map(|x| 0.5 * (at(x, above) + at(x, below)))
+        .collect();
+    // cos(a) - cos(b), without its cancellation.
+    let (a, b) = row_span(row, height);
+    let angle = |rows: f64| 0.5 * PI * rows / height as f64;
+    let solid_angle = 2.0 * angle(a + b).sin() * angle(b - a).sin();
+    (0..width)
+        .map(|x| 0.5 * (means[x] + means[(x + 1) % width]) * solid_angle)
         .collect()
+}
+
+/// The device's texels. The densities are those that the distribution realises.
+fn texels(image: &EnvironmentImage, cdf: &[u32]) -> Vec<[f32; 4]> {
+    let (width, height) = (image.width, image.height);
+    let mut texels = vec![[0.0; 4]; width * (height + 2)];
+    let marginal = cdf.get(..=height).unwrap_or_default();
+    let rows: Vec<f64> = probabilities(marginal).collect();
+    texels
+        .par_chunks_mut(width)
+        .enumerate()
+        .for_each(|(row, texels)| {
+            let y = row.saturating_sub(1).min(height - 1);
+            for (texel, [r, g, b]) in texels.iter_mut().zip(&image.texels[y * width..]) {
+                *texel = [*r, *g, *b, 0.0];
+            }
+            // The columns of a row that is never chosen mean nothing.
+            if let Some(p) = rows.get(row).filter(|p| **p > 0.0) {
+                let columns = &cdf[height + 1 + row * width..][..width];
+                let (a, b) = row_span(row, height);
+                let area = (b - a) / (width as f64 * height as f64);
+                for (texel, column) in texels.iter_mut().zip(probabilities(columns)) {
+                    texel[3] = (p * column / (area * 2.0 * PI * PI)) as f32;
+                }
+            }
+        });
+    texels
 }
 
 fn mean_radiance(image: &EnvironmentImage) -> DVec3 {
@@ -83,4 +129,78 @@ fn mean_radiance(image: &EnvironmentImage) -> DVec3 {
         total += weight * image.width as f64;
     }
     sum / total
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(
+        width: usize,
+        height: usize,
+        at: impl Fn(usize, usize) -> [f32; 3],
+    ) -> EnvironmentImage {
+        let texel = |i: usize| at(i % width, i / width);
+        EnvironmentImage {
+            width,
+            height,
+            texels: (0..width * height).map(texel).collect(),
+        }
+    }
+
+    /// Integral of the density over the unit square.
+    fn integral(table: &EnvironmentTable, width: usize, height: usize) -> f64 {
+        let rows = table.texels.chunks(width).take(height + 1).enumerate();
+        let probability = |(row, texels): (usize, &[[f32; 4]])| {
+            let (a, b) = row_span(row, height);
+            let densities = texels.iter().map(|t| f64::from(t[3]));
+            densities.sum::<f64>() * (b - a)
+        };
+        rows.map(probability).sum::<f64>() * 2.0 * PI * PI / (width * height) as f64
+    }
+
+    #[test]
+    fn a_single_texel_has_all_of_the_probability() {
+        let table = EnvironmentTable::new(&image(1, 1, |_, _| [1.0, 2.0, 3.0]));
+        // Both halves alike, but for the rounding of their solid angles.
+        let half = table.cdf[1];
+        assert!(half.abs_diff(1 << 30) <= 1, "{half}");
+        assert_eq!(table.cdf, [0, half, 0, 0]);
+        let density = (0.5 / (PI * PI)) as f32;
+        let cell = [1.0, 2.0, 3.0, density];
+        assert_eq!(table.texels, [cell, cell, [1.0, 2.0, 3.0, 0.0]]);
+    }
+
+    #[test]
+    fn black_has_no_distribution() {
+        let table = EnvironmentTable::new(&image(3, 2, |_, _| [0.0; 3]));
+        assert!(table.is_black());
+        assert_eq!(table.texels, [[0.0; 4]; 12]);
+    }
+
+    #[test]
+    fn light_and_density_are_in_the_same_places() {
+        // A sun of 1e6 times the rest; black rows and columns; light that f32 sums would lose.
+        let (width, height) = (256, 128);
+        let image = image(width, height, |x, y| match (x, y) {
+            (200, 40) => [1e6, 9e5, 8e5],
+            (_, 90..) | (20..30, _) => [0.0; 3],
+            (100, 80) => [0.0, 1e-30, 0.0],
+            _ => [0.5, 0.25, 1.0],
+        });
+        let table = EnvironmentTable::new(&image);
+        let integral = integral(&table, width, height);
+        assert!((integral - 1.0).abs() < 1e-6, "{integral}");
+        let is_black = |x: usize, y: usize| image.texels[y * width + x] == [0.0; 3];
+        for row in 0..=height {
+            for x in 0..width {
+                let (above, below) = (row.saturating_sub(1), row.min(height - 1));
+                let right = (x + 1) % width;
+                let corners = [(x, above), (right, above), (x, below), (right, below)];
+                let black = corners.iter().all(|&(x, y)| is_black(x, y));
+                let density = table.texels[row * width + x][3];
+                assert_eq!(density == 0.0, black, "column {x}, row {row}");
+            }
+        }
+    }
 }

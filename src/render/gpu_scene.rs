@@ -97,6 +97,6 @@ fn paged_buffers(device: &Device, scene: &Prepared) -> Result<Vec<PagedBuffer>, 
         PagedBuffer::upload(device, 2, &scene.vertex_words)?,
         words(device, 3, &scene.textures.words)?,
         PagedBuffer::upload(device, 4, &environment.texels)?,
-        PagedBuffer::upload(device, 5, &environment.alias)?,
+        words(device, 5, &environment.cdf)?,
     ])
 }

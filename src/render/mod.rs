@@ -4,6 +4,7 @@
 
 mod alias;
 mod band;
+mod cdf;
 mod emission;
 mod environment;
 mod error;

@@ -14,7 +14,7 @@ pub const LARGE_ARRAYS: [(&str, &str, &str); 6] = [
     ("vertex_words", "f32", "load_vertex_word"),
     ("texel_words", "u32", "load_texel_word"),
     ("environment_texels", "vec4f", "load_environment_texel"),
-    ("environment_alias", "vec2u", "load_environment_alias"),
+    ("environment_cdf", "u32", "load_environment_cdf"),
 ];
 
 /// The `buffers.wgsl` of a scene whose large arrays have `pages` pages each: for compiling without

@@ -130,6 +130,10 @@ fn is_sliver(triangle: &[Vec3; 3]) -> bool {
     (b - a).cross(c - a).length() <= 0.01 * longest
 }
 
+/// Texels along a side: the shaders find them by f32 coordinates, which tell quarters of them apart
+/// up to here, and count two sides of a mirrored texture in 24 bits.
+const MAX_SIDE: u64 = 1 << 22;
+
 fn check_counts(scene: &Scene) -> Result<(), RenderError> {
     let check = |what, count: u64, limit: u64| {
         if count > limit {
@@ -148,6 +152,9 @@ fn check_counts(scene: &Scene) -> Result<(), RenderError> {
         .sum();
     // A vertex has at most 15 words, counted in 32 bits.
     check("vertices", vertices, u64::from(u32::MAX) / 15)?;
+    let sides = scene.images.iter().flat_map(|i| [i.width, i.height]);
+    let side = sides.max().unwrap_or(0).into();
+    check("texels along a side of an image", side, MAX_SIDE)?;
     let texels = scene
         .images
         .iter()
@@ -156,6 +163,8 @@ fn check_counts(scene: &Scene) -> Result<(), RenderError> {
     let sky = scene.environment.as_ref().and_then(|e| e.image.as_ref());
     let sky_texels = sky.map_or(0, |image| image.texels.len() as u64);
     check("texels of the environment", sky_texels, 1 << 30)?;
+    let side = sky.map_or(0, |image| image.width.max(image.height) as u64);
+    check("texels along a side of the environment", side, MAX_SIDE)?;
     // An image is held at most twice, in at most two words a texel.
     check("texels", texels, u64::from(u32::MAX) / 4)
 }

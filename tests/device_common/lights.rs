@@ -46,6 +46,20 @@ impl Bench {
         let n = directions.len();
         kernel.run(n as u32, [0; 3], &inputs, n, &self.stage.buffers())
     }
+
+    /// One estimate for each pixel, of `samples` samples.
+    pub fn estimate(&self, entry: &str, pixels: usize, samples: u32) -> Vec<[f32; 4]> {
+        let kernel = self.setup.kernel("lights", entry);
+        let inputs = [self.point, self.normal];
+        let params = [1, samples, 0];
+        kernel.run(
+            pixels as u32,
+            params,
+            &inputs,
+            pixels,
+            &self.stage.buffers(),
+        )
+    }
 }
 
 pub fn xyz(v: &[f32; 4]) -> [f32; 3] {

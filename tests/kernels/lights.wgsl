@@ -36,8 +36,32 @@ fn sample_any(@builtin(global_invocation_id) id: vec3u) {
 fn sample_environment(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < params.x) {
         var random = sampler_begin(vec2u(5u, 9u), vec2u(id.x, 0u), params.y);
-        let u = next_2d(&random);
-        write(id.x, environment_sample(test_surface(), u, &random));
+        write(id.x, environment_sample(test_surface(), next_2d_bits(&random)));
+    }
+}
+
+// Mean over params.z samples of what the environment sends to the surface, for a pixel of its own.
+@compute @workgroup_size(64)
+fn estimate_environment(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x >= params.x) {
+        return;
+    }
+    let s = test_surface();
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < params.z; i += 1u) {
+        var random = sampler_begin(vec2u(id.x, 3u), vec2u(i, 0u), params.y);
+        let light = environment_sample(s, next_2d_bits(&random));
+        sum += light.weight * max(dot(light.wi, s.normal), 0.0);
+    }
+    outputs[id.x] = vec4f(sum / f32(params.z), 0.0);
+}
+
+// Column and row of the cell that a pair of numbers chooses, and where in it.
+@compute @workgroup_size(64)
+fn invert_environment(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x < params.x) {
+        let p = environment_choose(bitcast<vec2u>(inputs[2u + id.x].xy));
+        outputs[id.x] = vec4f(f32(p.cell.x), f32(p.cell.y), p.inside);
     }
 }
 
@@ -46,7 +70,8 @@ fn sample_environment(@builtin(global_invocation_id) id: vec3u) {
 fn evaluate_environment(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < params.x) {
         let d = inputs[2u + id.x].xyz;
-        outputs[id.x] = vec4f(environment_radiance(d), environment_pdf(inputs[1].xyz, d));
+        let light = environment_light(inputs[1].xyz, d);
+        outputs[id.x] = vec4f(light.radiance, light.pdf);
     }
 }
 

@@ -9,7 +9,7 @@
 @group(0) @binding(14) var<storage, read> inputs: array<vec4u>;
 @group(0) @binding(15) var<storage, read_write> outputs: array<vec4u>;
 
-// cos and sin of 2 pi x, the angle of (x, y), and the neighbours of x.
+// cos and sin of 2 pi x, the angle of (x, y), and of w the integer part and the neighbours.
 @compute @workgroup_size(64)
 fn functions(@builtin(global_invocation_id) id: vec3u) {
     if (id.x >= params.x) {
@@ -17,7 +17,7 @@ fn functions(@builtin(global_invocation_id) id: vec3u) {
     }
     let v = bitcast<vec4f>(inputs[id.x]);
     let turn = cos_sin_2pi(v.x);
-    outputs[2u * id.x] = bitcast<vec4u>(vec4f(turn, arctan2(v.y, v.z), 0.0));
+    outputs[2u * id.x] = vec4u(bitcast<vec2u>(turn), bitcast<u32>(arctan2(v.y, v.z)), floor_to_u32(v.w));
     outputs[2u * id.x + 1u] = vec4u(
         bitcast<u32>(next_up(v.w)),
         bitcast<u32>(next_down(v.w)),
