@@ -36,12 +36,7 @@ fn no_light_sample() -> LightSample {
 
 // A sample of the light that arrives at `s`; pdf 0 if there is none.
 fn sample_light(s: Surface, sampler: ptr<function, Sampler>) -> LightSample {
-    let choice = next_2d_bits(sampler);
-    var index = multiply_high(choice.x, frame.light_count);
-    if (unit_float(choice.y) >= lights[index].threshold) {
-        index = lights[index].alias_index;
-    }
-    let light = lights[index];
+    let light = lights[choose_light(sampler)];
     let kind = light.kind_and_index >> LIGHT_KIND_SHIFT;
     let item = light.kind_and_index & LIGHT_INDEX_MASK;
     let u = next_2d_bits(sampler);
@@ -56,6 +51,18 @@ fn sample_light(s: Surface, sampler: ptr<function, Sampler>) -> LightSample {
     sample.pdf *= light.probability;
     sample.weight /= light.probability;
     return sample;
+}
+
+// A light, in proportion to its probability. One alone needs no numbers, but keeps their dimension.
+fn choose_light(sampler: ptr<function, Sampler>) -> u32 {
+    if (!HAS_SEVERAL_LIGHTS) {
+        (*sampler).dimension += 1u;
+        return 0u;
+    }
+    let choice = next_2d_bits(sampler);
+    let index = multiply_high(choice.x, frame.light_count);
+    let light = lights[index];
+    return select(light.alias_index, index, unit_float(choice.y) < light.threshold);
 }
 
 // The ray from a surface to a light sample: what it meets hides the light.

@@ -155,6 +155,7 @@ pub fn constants(
             "HAS_PUNCTUAL_LIGHTS",
             Constant::Bool(scene.lights.iter().any(super::lights::is_punctual)),
         ),
+        ("HAS_SEVERAL_LIGHTS", Constant::Bool(scene.lights.len() > 1)),
         (
             "HAS_ENVIRONMENT",
             Constant::Bool(scene.environment_light != super::layout::NONE),

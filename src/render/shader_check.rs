@@ -58,6 +58,7 @@ pub fn constants(on: bool) -> Vec<(&'static str, Constant)> {
     constants.extend([
         ("HAS_LIGHT_TRIANGLES", Constant::Bool(on)),
         ("HAS_PUNCTUAL_LIGHTS", Constant::Bool(on)),
+        ("HAS_SEVERAL_LIGHTS", Constant::Bool(on)),
         ("HAS_ENVIRONMENT", Constant::Bool(on)),
         ("HAS_ENVIRONMENT_IMAGE", Constant::Bool(on)),
         ("VERTEX_STRIDE", Constant::U32(if on { 15 } else { 0 })),

@@ -68,6 +68,7 @@ impl Setup {
         for name in [
             "HAS_LIGHT_TRIANGLES",
             "HAS_PUNCTUAL_LIGHTS",
+            "HAS_SEVERAL_LIGHTS",
             "HAS_ENVIRONMENT",
             "HAS_ENVIRONMENT_IMAGE",
             "COUNT_STEPS",
