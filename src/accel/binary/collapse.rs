@@ -209,12 +209,13 @@ fn join(top: Emission, subtrees: Vec<Emission>) -> WideTopology {
     for (root, subtree) in top.unfilled.iter().zip(subtrees) {
         // Its node 1 comes next.
         let offset = nodes.len() as u32 - 1;
-        let moved = |node: &WideChildren| WideChildren {
+        let mut moved = subtree.nodes.into_iter().map(|node| WideChildren {
             first_inner: node.first_inner + offset,
-            ..*node
-        };
-        nodes[root.wide as usize] = moved(&subtree.nodes[0]);
-        nodes.extend(subtree.nodes[1..].iter().map(moved));
+            ..node
+        });
+        let place = &mut nodes[root.wide as usize];
+        *place = moved.next().unwrap_or(*place);
+        nodes.extend(moved);
     }
     WideTopology { nodes, depth }
 }
