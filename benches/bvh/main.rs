@@ -4,6 +4,8 @@
 //! `cargo bench --bench bvh` runs all of it; arguments go to divan. `ETENDUE_SHARED` names a folder
 //! with `assets/models`, from which a scene is added.
 
+#[path = "../../tests/accel_common/meshes.rs"]
+mod common;
 mod meshes;
 mod peers;
 mod quality;
@@ -11,6 +13,7 @@ mod quality;
 use divan::Bencher;
 use etendue::accel::Preset;
 use etendue::accel::binary::BinaryTree;
+use etendue::accel::pair::pairs;
 use meshes::{Mesh, NAMES, mesh};
 
 const THREADS: usize = 2;
@@ -35,6 +38,12 @@ fn time<T>(bencher: Bencher, name: &str, build: impl Fn(&Mesh) -> T + Sync) {
         Some(mesh) => bencher.bench(|| build(&mesh)),
         None => bencher.bench(|| ()),
     }
+}
+
+/// What the trees are built over, found first.
+#[divan::bench(args = NAMES, sample_size = 1)]
+fn match_pairs(bencher: Bencher, name: &str) {
+    time(bencher, name, |mesh| pairs(&mesh.triangles));
 }
 
 #[divan::bench(args = NAMES, sample_size = 1)]

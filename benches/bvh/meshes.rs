@@ -1,5 +1,6 @@
 //! What the trees are built over.
 
+use crate::common::Random;
 use etendue::accel::Primitive;
 use etendue::accel::pair::{Pair, pairs};
 use etendue::geometry::Aabb;
@@ -49,34 +50,6 @@ pub fn mesh(name: &str) -> Option<Mesh> {
         pairs,
         boxes,
     })
-}
-
-/// SplitMix64.
-pub struct Random(pub u64);
-
-impl Random {
-    /// In [0, 1).
-    pub fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 40) as f32 / 16_777_216.0
-    }
-
-    /// In [-1, 1)³.
-    pub fn point(&mut self) -> Vec3 {
-        Vec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
-    }
-
-    /// Uniform over the sphere.
-    pub fn direction(&mut self) -> Vec3 {
-        loop {
-            let p = self.point();
-            if p.length_squared() > 0.01 && p.length_squared() < 1.0 {
-                return p.normalize();
-            }
-        }
-    }
 }
 
 fn soup(n: usize) -> Vec<Triangle> {

@@ -1,7 +1,8 @@
 //! What a tree is worth, by measures of our own for all of them: the surface area heuristic, and the
 //! steps of one traversal over boxes that are exact, of binary and of wide nodes.
 
-use crate::meshes::{Mesh, Random};
+use crate::common::Random;
+use crate::meshes::Mesh;
 use crate::peers;
 use etendue::accel::Preset;
 use etendue::accel::binary::{BinaryTree, WideTopology};

@@ -84,6 +84,17 @@ pub struct Placed {
     pub id: u32,
 }
 
+impl Placed {
+    /// Fills room that is written to later.
+    const VOID: Placed = Placed {
+        turned: pair::Turned {
+            triangle: 0,
+            first: 0,
+        },
+        id: 0,
+    };
+}
+
 impl Bvh {
     /// Whether all elements are pairs, each to be tested by every ray.
     pub fn is_list(&self) -> bool {

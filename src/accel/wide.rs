@@ -1,13 +1,14 @@
 //! The tree that the device traverses: pairs of triangles below wide nodes.
 
-use super::binary::{BinaryTree, WideTopology};
-use super::element::{Element, MAX_ELEMENTS};
+use super::binary::{BinaryTree, WideChildren, WideTopology};
+use super::element::{Element, MAX_ELEMENTS, WIDTH};
 use super::pair::{Pair, pairs};
 use super::primitive::Primitive;
 use super::{BuildOptions, Bvh, Placed};
 use crate::geometry::Aabb;
 use glam::Vec3;
 use rayon::prelude::*;
+use std::ops::Range;
 
 impl Bvh {
     /// Builds the structure over triangles whose vertices are all finite, in any number up to
@@ -20,19 +21,14 @@ impl Bvh {
         }
         let tree = BinaryTree::build(&primitives(&pairs, triangles), options.preset);
         let topology = tree.collapse();
-        let plan = Plan::new(&topology, &tree, &pairs);
-        let element = |kind: &Kind| match *kind {
-            Kind::Node(i) => plan.node(i as usize, &topology, &tree),
-            Kind::Pair(i) => {
-                let vertices = pairs[i as usize].vertices(triangles);
-                Element::pair(vertices, plan.positions[i as usize])
-            }
+        let emission = Emission {
+            first_child: first_children(&topology),
+            topology: &topology,
+            tree: &tree,
+            pairs: &pairs,
+            triangles,
         };
-        Bvh {
-            elements: plan.kinds.par_iter().map(element).collect(),
-            order: order(&plan, &pairs),
-            depth: topology.depth,
-        }
+        emission.run()
     }
 }
 
@@ -66,77 +62,139 @@ fn primitives(pairs: &[Pair], triangles: &[[Vec3; 3]]) -> Vec<Primitive> {
     pairs.par_iter().enumerate().map(primitive).collect()
 }
 
-/// What an element is to hold.
-#[derive(Debug, Clone, Copy)]
-enum Kind {
-    /// Wide node of the topology.
-    Node(u32),
-    /// Pair of the list.
-    Pair(u32),
+/// Wide nodes whose children one task writes.
+const CHUNK: usize = 1 << 12;
+
+/// The element that is the first child of each wide node: the children of all nodes follow each
+/// other, after the root.
+fn first_children(topology: &WideTopology) -> Vec<u32> {
+    let mut next = 1;
+    let first = |node: &WideChildren| {
+        let first = next;
+        next += node.children().len() as u32;
+        first
+    };
+    let first = topology.nodes.iter().map(first).collect();
+    debug_assert!(next as usize <= MAX_ELEMENTS);
+    first
 }
 
-/// Where everything goes.
-struct Plan {
-    kinds: Vec<Kind>,
+/// Everything that elements are made of.
+struct Emission<'a> {
+    topology: &'a WideTopology,
+    tree: &'a BinaryTree,
+    pairs: &'a [Pair],
+    triangles: &'a [[Vec3; 3]],
     /// The first child of each wide node, an element.
     first_child: Vec<u32>,
-    /// Position in the tree's order of each pair's first triangle.
-    positions: Vec<u32>,
 }
 
-impl Plan {
-    fn new(topology: &WideTopology, tree: &BinaryTree, pairs: &[Pair]) -> Plan {
-        let mut plan = Plan {
-            kinds: Vec::with_capacity(topology.nodes.len() + pairs.len()),
-            first_child: Vec::with_capacity(topology.nodes.len()),
-            positions: vec![0; pairs.len()],
-        };
-        plan.kinds.push(Kind::Node(0));
+/// The children of some wide nodes: room to write them to.
+struct Chunk<'a> {
+    nodes: Range<usize>,
+    elements: &'a mut [Element],
+    order: &'a mut [Placed],
+    /// Position in the tree's order of the first of `order`.
+    position: u32,
+}
+
+impl Emission<'_> {
+    fn run(&self) -> Bvh {
+        let count = self.topology.nodes.len() + self.pairs.len();
+        // Filled by all threads, since the first touch of memory takes time.
+        let void = Element { words: [0; 16] };
+        let mut elements: Vec<Element> = rayon::iter::repeat_n(void, count).collect();
+        let mut order: Vec<Placed> =
+            rayon::iter::repeat_n(Placed::VOID, self.triangles.len()).collect();
+        elements[0] = self.node(0);
+        let chunks = self.chunks(&mut elements[1..], &mut order);
+        chunks.into_par_iter().for_each(|chunk| self.write(chunk));
+        Bvh {
+            elements,
+            order,
+            depth: self.topology.depth,
+        }
+    }
+
+    /// Shares out the room.
+    fn chunks<'a>(
+        &self,
+        mut elements: &'a mut [Element],
+        mut order: &'a mut [Placed],
+    ) -> Vec<Chunk<'a>> {
+        let count = self.topology.nodes.len();
+        let ranges: Vec<Range<usize>> = (0..count)
+            .step_by(CHUNK)
+            .map(|start| start..count.min(start + CHUNK))
+            .collect();
+        let sizes: Vec<_> = ranges.par_iter().map(|r| self.sizes(r.clone())).collect();
         let mut position = 0;
-        for node in &topology.nodes {
-            plan.first_child.push(plan.kinds.len() as u32);
-            let (leaves, inner): (Vec<u32>, Vec<u32>) = node
-                .children()
-                .iter()
-                .partition(|&&child| tree.nodes[child as usize].is_leaf());
-            let nodes = node.first_inner..node.first_inner + inner.len() as u32;
-            plan.kinds.extend(nodes.map(Kind::Node));
-            for leaf in leaves {
-                let pair = tree.nodes[leaf as usize].index;
-                plan.kinds.push(Kind::Pair(pair));
-                plan.positions[pair as usize] = position;
-                position += 1 + u32::from(pairs[pair as usize].second.is_some());
+        let chunk = |(nodes, (children, triangles)): (_, (usize, usize))| {
+            let chunk = Chunk {
+                nodes,
+                elements: elements.split_off_mut(..children).expect("enough elements"),
+                order: order.split_off_mut(..triangles).expect("enough triangles"),
+                position,
+            };
+            position += triangles as u32;
+            chunk
+        };
+        ranges.into_iter().zip(sizes).map(chunk).collect()
+    }
+
+    /// The children of wide nodes, and the triangles in these.
+    fn sizes(&self, nodes: Range<usize>) -> (usize, usize) {
+        let children = self.topology.nodes[nodes].iter().map(|n| n.children());
+        let triangles = |&child: &u32| match self.pair(child) {
+            Some(pair) => 1 + usize::from(pair.second.is_some()),
+            None => 0,
+        };
+        children.fold((0, 0), |(all, sum), children| {
+            let here: usize = children.iter().map(triangles).sum();
+            (all + children.len(), sum + here)
+        })
+    }
+
+    /// What a child is if it is a leaf.
+    fn pair(&self, child: u32) -> Option<Pair> {
+        let node = &self.tree.nodes[child as usize];
+        node.is_leaf().then(|| self.pairs[node.index as usize])
+    }
+
+    /// Nodes first, then pairs.
+    fn write(&self, chunk: Chunk) {
+        let first = self.first_child[chunk.nodes.start];
+        let mut elements = chunk.elements.iter_mut().zip(first..);
+        let mut order = chunk.order.iter_mut();
+        let mut position = chunk.position;
+        for node in &self.topology.nodes[chunk.nodes] {
+            let pairs = node.children().iter().filter_map(|&child| self.pair(child));
+            let inner = node.children().len() - pairs.clone().count();
+            let nodes = node.first_inner..node.first_inner + inner as u32;
+            for (wide, (element, _)) in nodes.zip(elements.by_ref()) {
+                *element = self.node(wide as usize);
+            }
+            for (pair, (element, index)) in pairs.zip(elements.by_ref()) {
+                *element = Element::pair(pair.vertices(self.triangles), position);
+                let turned = [Some(pair.first), pair.second].into_iter().flatten();
+                for ((id, turned), placed) in (2 * index..).zip(turned).zip(order.by_ref()) {
+                    *placed = Placed { turned, id };
+                    position += 1;
+                }
             }
         }
-        debug_assert!(plan.kinds.len() <= MAX_ELEMENTS);
-        plan
     }
 
-    fn node(&self, i: usize, topology: &WideTopology, tree: &BinaryTree) -> Element {
-        let children = topology.nodes[i].children();
-        let is_leaf = |&child: &u32| tree.nodes[child as usize].is_leaf();
-        let padded = |&child: &u32| tree.nodes[child as usize].bounds.padded();
-        let inner = children.iter().filter(|c| !is_leaf(c));
-        let leaves = children.iter().filter(|c| is_leaf(c));
-        let boxes: Vec<Aabb> = inner.clone().chain(leaves).map(padded).collect();
-        Element::node(&boxes, inner.count() as u32, self.first_child[i])
-    }
-}
-
-fn order(plan: &Plan, pairs: &[Pair]) -> Vec<Placed> {
-    let placed = |(i, kind): (usize, &Kind)| match *kind {
-        Kind::Pair(pair) => {
-            let Pair { first, second } = pairs[pair as usize];
-            let id = 2 * i as u32;
-            let second = second.map(|turned| Placed { turned, id: id + 1 });
-            [Some(Placed { turned: first, id }), second]
+    fn node(&self, i: usize) -> Element {
+        let children = self.topology.nodes[i].children();
+        let at = |&child: &u32| &self.tree.nodes[child as usize];
+        let inner = children.iter().map(at).filter(|node| !node.is_leaf());
+        let leaves = children.iter().map(at).filter(|node| node.is_leaf());
+        let mut boxes = [Aabb::EMPTY; WIDTH];
+        for (place, node) in boxes.iter_mut().zip(inner.clone().chain(leaves)) {
+            *place = node.bounds.padded();
         }
-        _ => [None; 2],
-    };
-    plan.kinds
-        .iter()
-        .enumerate()
-        .flat_map(placed)
-        .flatten()
-        .collect()
+        let first = self.first_child[i];
+        Element::node(&boxes[..children.len()], inner.count() as u32, first)
+    }
 }

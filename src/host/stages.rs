@@ -3,7 +3,7 @@
 //! One record for the process, as for a log: the stages lie in all layers, and several run at the same time.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -65,14 +65,19 @@ pub fn begin() {
 
 /// Runs a stage and notes its time; the times of one name add up. After the first sample nothing is noted.
 pub fn stage<T>(name: &'static str, work: impl FnOnce() -> T) -> T {
+    timed_stage(name, work).0
+}
+
+/// As [`stage`]; also gives the time.
+pub fn timed_stage<T>(name: &'static str, work: impl FnOnce() -> T) -> (T, Duration) {
     let start = Instant::now();
     let result = work();
-    let seconds = start.elapsed().as_secs_f64();
+    let time = start.elapsed();
     let mut record = record();
     if record.startup.first_sample.is_none() {
-        record.startup.stages.add(name, seconds);
+        record.startup.stages.add(name, time.as_secs_f64());
     }
-    result
+    (result, time)
 }
 
 /// The first samples are finished; later calls change nothing.

@@ -3,6 +3,8 @@
 //! Transforms are applied in f64 and positions are taken relative to the camera before they are
 //! rounded to f32, so a scene far from the origin keeps its precision where the picture is taken.
 
+use std::borrow::Cow;
+
 use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -73,24 +75,31 @@ impl FlatGeometry {
             .unwrap_or(0) as u32;
         let positions: Vec<Vec3> = mesh
             .positions
-            .iter()
+            .par_iter()
             .map(|p| (instance.to_world.transform_point3(p.as_dvec3()) - origin).as_vec3())
             .collect();
         let linear = DMat3::from_mat4(instance.to_world);
         let mirrored = linear.determinant() < 0.0;
         let flags = triangle_flags(mesh, material, format);
-        for &[a, b, c] in &mesh.indices {
-            // A mirror turns windings round: the front stays the front.
-            let corner = if mirrored { [a, c, b] } else { [a, b, c] };
-            let triangle = corner.map(|i| positions[i as usize]);
-            if !triangle.iter().all(|v| v.is_finite()) {
-                self.dropped += 1;
-                continue;
-            }
-            self.triangles.push(triangle);
-            self.indices.push(corner.map(|i| first_vertex + i));
-            self.attributes.push(mesh.material as u32 | flags);
+        // A mirror turns windings round: the front stays the front.
+        let turned = |&[a, b, c]: &[u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
+        let is_finite = |corners: &[u32; 3]| {
+            let mut corners = corners.iter();
+            corners.all(|&i| positions[i as usize].is_finite())
+        };
+        let mut kept = Cow::Borrowed(&mesh.indices);
+        if !positions.par_iter().all(|p| p.is_finite()) {
+            kept.to_mut().retain(is_finite);
         }
+        self.dropped += (mesh.indices.len() - kept.len()) as u64;
+        let corners = kept.par_iter().map(turned);
+        let triangle = |corners: [u32; 3]| corners.map(|i| positions[i as usize]);
+        self.triangles.par_extend(corners.clone().map(triangle));
+        self.indices
+            .par_extend(corners.map(|corners| corners.map(|i| first_vertex + i)));
+        let attributes = mesh.material as u32 | flags;
+        self.attributes
+            .par_extend(rayon::iter::repeat_n(attributes, kept.len()));
         format.append(&mut self.words, mesh, &linear);
     }
 
@@ -106,13 +115,12 @@ impl FlatGeometry {
 
     /// Radius of a sphere around the middle of the bounds that holds everything, metres.
     pub fn radius(&self) -> f64 {
-        let (low, high) = self
-            .triangles
-            .iter()
-            .flatten()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| {
-                (low.min(v.as_dvec3()), high.max(v.as_dvec3()))
-            });
+        let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let add =
+            |(low, high): (DVec3, DVec3), v: &Vec3| (low.min(v.as_dvec3()), high.max(v.as_dvec3()));
+        let both = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
+        let vertices = self.triangles.as_flattened().par_iter();
+        let (low, high) = vertices.fold(nothing, add).reduce(nothing, both);
         if self.triangles.is_empty() {
             return 0.0;
         }

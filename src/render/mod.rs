@@ -3,6 +3,7 @@
 //! [`Prepared`] -> [`GpuScene`] -> [`Renderer`] -> [`Film`].
 
 mod alias;
+mod attach;
 mod band;
 mod cdf;
 mod emission;

@@ -1,21 +1,23 @@
 //! A scene made ready for the device: flat, sorted by the BVH, its lights in a table. No device yet.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::{DVec3, Vec2, Vec3};
+use rayon::prelude::*;
 
+use super::attach::attach;
 use super::emission::triangle_power;
 use super::environment::EnvironmentTable;
 use super::error::RenderError;
 use super::flatten::FlatGeometry;
-use super::layout::{self, FIRST_ATTRIBUTES, FIRST_LIGHT, NONE};
+use super::layout::{self, NONE};
 use super::lights::{LightList, punctual};
 use super::materials::materials;
 use super::textures::TextureSet;
 use super::vertex_format::{VertexFormat, VertexNeeds};
 use crate::accel::{BuildOptions, Bvh, Placed};
-use crate::host::stages::stage;
-use crate::scene::{Features, LightKind, PunctualLight, Scene};
+use crate::host::stages::{stage, timed_stage};
+use crate::scene::{Features, LightKind, Material, PunctualLight, Scene};
 
 /// Most triangles that the BVH can count.
 const MAX_TRIANGLES: u64 = crate::accel::MAX_TRIANGLES as u64;
@@ -29,7 +31,7 @@ pub struct Prepared {
     pub origin: DVec3,
     /// The acceleration structure.
     pub bvh: Bvh,
-    /// Wall time of its build.
+    /// Wall time of its build, the stage `bvh`.
     pub bvh_time: Duration,
     /// Whether any of its triangles is in the table of lights.
     pub has_light_triangles: bool,
@@ -73,10 +75,9 @@ impl Prepared {
         let origin = scene.cameras[camera].to_world.w_axis.truncate();
         let flatten = || FlatGeometry::new(scene, &vertex_format, origin);
         let mut flat = stage("flatten", flatten);
-        let start = Instant::now();
         let options = options_for(&flat.triangles, options);
-        let mut bvh = stage("bvh", || Bvh::build(&flat.triangles, &options));
-        let bvh_time = start.elapsed();
+        let build = || Bvh::build(&flat.triangles, &options);
+        let (mut bvh, bvh_time) = timed_stage("bvh", build);
         flat.reorder(&bvh.order);
         let mut textures = TextureSet::default();
         let materials = materials(scene, &mut textures);
@@ -186,21 +187,21 @@ fn add_triangle_lights(
     format: &VertexFormat,
     order: &[Placed],
 ) -> Vec<u32> {
-    (0..flat.triangles.len())
-        .map(|i| {
-            let material = &scene.materials[flat.material(i)];
-            if material.unlit || material.emissive.max_element() <= 0.0 {
-                return NONE;
-            }
-            let corners = |set| flat.indices[i].map(|v| tex_coord(flat, format, v, set));
-            let power = triangle_power(scene, material, &flat.triangles[i], corners);
-            if power > 0.0 && power.is_finite() {
-                lights.add_triangle(order[i].id, power)
-            } else {
-                NONE
-            }
-        })
-        .collect()
+    let emits = |m: &Material| !m.unlit && m.emissive.max_element() > 0.0;
+    let emits: Vec<bool> = scene.materials.iter().map(emits).collect();
+    let mut table: Vec<u32> = rayon::iter::repeat_n(NONE, flat.triangles.len()).collect();
+    // Found in parallel, since most triangles of most scenes are none; entered in order.
+    let all = (0..flat.triangles.len()).into_par_iter();
+    let found: Vec<usize> = all.filter(|&i| emits[flat.material(i)]).collect();
+    for i in found {
+        let material = &scene.materials[flat.material(i)];
+        let corners = |set| flat.indices[i].map(|v| tex_coord(flat, format, v, set));
+        let power = triangle_power(scene, material, &flat.triangles[i], corners);
+        if power > 0.0 && power.is_finite() {
+            table[i] = lights.add_triangle(order[i].id, power);
+        }
+    }
+    table
 }
 
 fn tex_coord(flat: &FlatGeometry, format: &VertexFormat, vertex: u32, set: u32) -> Vec2 {
@@ -250,21 +251,6 @@ fn add_other_lights(
         return NONE;
     }
     lights.add_environment(mean, radius)
-}
-
-/// Writes into each pair what a hit on it leads to: materials, flags, lights.
-fn attach(bvh: &mut Bvh, flat: &FlatGeometry, lights: &[u32]) {
-    for (i, placed) in bvh.order.iter().enumerate() {
-        let words = &mut bvh.elements[placed.id as usize / 2].words;
-        let emits = lights[i] != NONE;
-        // Of two lights the first is kept; the second one's comes right after it.
-        let is_first_light = words[FIRST_ATTRIBUTES] & layout::TRIANGLE_EMITS == 0;
-        if emits && is_first_light {
-            words[FIRST_LIGHT] = lights[i];
-        }
-        let flag = if emits { layout::TRIANGLE_EMITS } else { 0 };
-        words[FIRST_ATTRIBUTES + (placed.id & 1) as usize] = flat.attributes[i] | flag;
-    }
 }
 
 fn warnings(dropped: u64, lost_lights: u64) -> Vec<String> {

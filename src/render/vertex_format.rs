@@ -1,6 +1,7 @@
 //! Which attributes the vertices on the device carry, and where.
 
-use glam::{DMat3, DVec3, Vec4};
+use glam::{DMat3, DVec3, Vec3, Vec4};
+use rayon::prelude::*;
 
 use crate::scene::Mesh;
 
@@ -66,37 +67,47 @@ impl VertexFormat {
         if self.stride == 0 {
             return;
         }
-        words.reserve(mesh.positions.len() * self.stride as usize);
         let sign = if linear.determinant() < 0.0 {
             -1.0
         } else {
             1.0
         };
         let cofactor = cofactor(linear) * sign;
-        for i in 0..mesh.positions.len() {
-            if self.normals.is_some() {
-                let n = mesh.normals.get(i).map_or(DVec3::ZERO, |n| {
-                    (cofactor * n.as_dvec3()).normalize_or_zero()
-                });
-                words.extend(n.as_vec3().to_array());
-            }
-            if self.tangents.is_some() {
-                let t = mesh.tangents.get(i).map_or(Vec4::ZERO, |t| {
-                    let turned = (*linear * t.truncate().as_dvec3()).normalize_or_zero();
-                    turned.as_vec3().extend(t.w * sign as f32)
-                });
-                words.extend(t.to_array());
-            }
-            for (set, offset) in [self.uv0, self.uv1].into_iter().enumerate() {
-                if offset.is_some() {
-                    let uv = mesh.tex_coords[set].get(i).copied().unwrap_or_default();
-                    words.extend(uv.to_array());
-                }
-            }
-            if self.colors.is_some() {
-                words.extend(mesh.colors.get(i).copied().unwrap_or(Vec4::ONE).to_array());
-            }
-        }
+        let normal = |i: usize| {
+            let turned = |n: &Vec3| (cofactor * n.as_dvec3()).normalize_or_zero();
+            let n = mesh.normals.get(i).map_or(DVec3::ZERO, turned);
+            n.as_vec3().to_array()
+        };
+        let tangent = |i: usize| {
+            let turned = |t: &Vec4| {
+                let turned = (*linear * t.truncate().as_dvec3()).normalize_or_zero();
+                turned.as_vec3().extend(t.w * sign as f32)
+            };
+            mesh.tangents.get(i).map_or(Vec4::ZERO, turned).to_array()
+        };
+        let uv = |set: usize, i: usize| {
+            let uv = mesh.tex_coords[set].get(i).copied().unwrap_or_default();
+            uv.to_array()
+        };
+        let color = |i: usize| mesh.colors.get(i).copied().unwrap_or(Vec4::ONE).to_array();
+        let start = words.len();
+        let count = mesh.positions.len() * self.stride as usize;
+        words.par_extend(rayon::iter::repeat_n(0.0, count));
+        let vertices = words[start..].par_chunks_exact_mut(self.stride as usize);
+        vertices.enumerate().for_each(|(i, vertex)| {
+            put(vertex, self.normals, || normal(i));
+            put(vertex, self.tangents, || tangent(i));
+            put(vertex, self.uv0, || uv(0, i));
+            put(vertex, self.uv1, || uv(1, i));
+            put(vertex, self.colors, || color(i));
+        });
+    }
+}
+
+/// Writes an attribute where vertices carry it.
+fn put<const N: usize>(vertex: &mut [f32], offset: Option<u32>, value: impl Fn() -> [f32; N]) {
+    if let Some(offset) = offset {
+        vertex[offset as usize..][..N].copy_from_slice(&value());
     }
 }
 
@@ -112,7 +123,6 @@ fn cofactor(m: &DMat3) -> DMat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     #[test]
     fn leaves_out_what_is_not_needed() {

@@ -143,3 +143,48 @@ pub fn boxes(n: usize) -> Triangles {
     let place = |i: usize| scaled(&cube(1), 0.125, Vec3::X * (0.25 * i as f32 - 1.0));
     (0..n).flat_map(place).collect()
 }
+
+/// Inputs on which builders break, by name; all vertices are finite.
+pub fn degenerate_inputs() -> Vec<(&'static str, Triangles)> {
+    let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let on_a_line = |i: usize| [Vec3::X * i as f32, Vec3::X * (i + 1) as f32, Vec3::ZERO];
+    let along_a_line = |i: usize| [i, i + 1, i].map(|x| Vec3::X * x as f32);
+    // Centroids at powers of two: any builder that looks for good splits peels them off one by one.
+    let exponential = |i: i32| triangle.map(|v| v + Vec3::X * 2f32.powi(i % 250 - 125));
+    let concentric = |i: i32| triangle.map(|v| (v - 0.5) * i as f32);
+    let growing = |i: i32| triangle.map(|v| v * 1.05f32.powi(i - 900) + Vec3::Z * i as f32 * 1e-30);
+    vec![
+        ("none", vec![]),
+        ("one", vec![triangle]),
+        ("two", vec![triangle; 2]),
+        ("three", soup(3, 0.1, 9)),
+        ("nine", soup(9, 0.1, 10)),
+        ("points", vec![[Vec3::ONE; 3]; 100]),
+        (
+            "distinct points",
+            (0..100).map(|i| [Vec3::ONE * i as f32; 3]).collect(),
+        ),
+        ("on a line", (0..1000).map(on_a_line).collect()),
+        ("along a line", (0..1000).map(along_a_line).collect()),
+        ("coincident", vec![triangle; 5000]),
+        ("concentric", (1..500).map(concentric).collect()),
+        ("growing", (0..1800).map(growing).collect()),
+        ("exponential", (0..2000).map(exponential).collect()),
+        ("huge", scaled(&soup(500, 0.1, 1), 1e30, Vec3::ZERO)),
+        ("largest", vec![[Vec3::MIN, Vec3::MAX, Vec3::ZERO]; 20]),
+        ("tiny", scaled(&soup(500, 0.1, 2), 1e-30, Vec3::ZERO)),
+        ("subnormal", scaled(&soup(500, 0.1, 3), 1e-42, Vec3::ZERO)),
+        (
+            "far away",
+            scaled(&soup(500, 0.1, 4), 1.0, Vec3::splat(1e7)),
+        ),
+        (
+            "huge and tiny",
+            [soup(200, 1e30, 5), soup(200, 1e-30, 6)].concat(),
+        ),
+        (
+            "negative zero",
+            vec![[-Vec3::ZERO, Vec3::ZERO, -Vec3::X]; 9],
+        ),
+    ]
+}

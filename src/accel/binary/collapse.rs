@@ -4,12 +4,16 @@
 //! choice of leaves, since a leaf here is one box in any case.
 
 use super::{BinaryNode, BinaryTree};
+use rayon::prelude::*;
 
 /// Most children of a wide node.
 pub const WIDTH: usize = 8;
 
 /// Smaller subtrees than this, in leaves, are worked on by one thread.
 const PARALLEL_LIMIT: u32 = 4096;
+
+/// Subtrees of no more leaves than this are emitted as one piece.
+const EMIT_LIMIT: u32 = 1 << 13;
 
 /// Which nodes of a binary tree become the children of which wide node.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -42,7 +46,9 @@ impl WideChildren {
 impl BinaryTree {
     /// Chooses the wide nodes so that the sum of their areas is least.
     pub fn collapse(&self) -> WideTopology {
-        let mut choices = vec![Choices(0); self.nodes.len()];
+        // Filled by all threads, since the first touch of memory takes time.
+        let mut choices: Vec<Choices> =
+            rayon::iter::repeat_n(Choices(0), self.nodes.len()).collect();
         if let [root, ..] = &self.nodes[..] {
             let scale = area_scale(root);
             let (own, below) = choices.split_at_mut(1);
@@ -165,36 +171,115 @@ fn combine(area: f32, [left, right]: &[Costs; 2], choices: &mut Choices) -> Cost
     costs
 }
 
-/// Follows the choices down from the root.
+/// A wide node that is to be filled.
+#[derive(Debug, Clone, Copy)]
+struct Unfilled {
+    /// Its index among the wide nodes.
+    wide: u32,
+    /// The binary node that it stands for.
+    root: u32,
+    /// Wide nodes from the root down to it.
+    level: u32,
+}
+
+/// Follows the choices down from the root: first to subtrees that are small enough, then all of
+/// these in parallel, each into a list of its own.
 fn emit(tree: &BinaryTree, choices: &[Choices]) -> WideTopology {
-    let mut nodes = vec![WideChildren {
-        children: [0; WIDTH],
-        count: 0,
-        first_inner: 1,
-    }];
-    let mut depth = 1;
-    // Wide nodes to fill: their index, the binary node, the level.
-    let mut stack = Vec::new();
+    let mut top = Emission::new();
     if !tree.nodes.is_empty() {
-        stack.push((0, 0, 1));
+        top.fill(tree, choices, Unfilled::ROOT, EMIT_LIMIT);
     }
-    while let Some((wide, root, level)) = stack.pop() {
-        depth = level.max(depth);
-        let mut children = WideChildren {
+    let below = |root: &Unfilled| {
+        let mut emission = Emission::new();
+        let root = Unfilled { wide: 0, ..*root };
+        emission.fill(tree, choices, root, u32::MAX);
+        emission
+    };
+    let subtrees: Vec<Emission> = top.unfilled.par_iter().map(below).collect();
+    join(top, subtrees)
+}
+
+/// Puts the nodes of the subtrees behind those at the top, but for their roots, which have a place there.
+fn join(top: Emission, subtrees: Vec<Emission>) -> WideTopology {
+    let depths = subtrees.iter().map(|subtree| subtree.depth);
+    let depth = depths.fold(top.depth, u32::max);
+    let count: usize = subtrees.iter().map(|subtree| subtree.nodes.len() - 1).sum();
+    let mut nodes = top.nodes;
+    nodes.reserve_exact(count);
+    for (root, subtree) in top.unfilled.iter().zip(subtrees) {
+        // Its node 1 comes next.
+        let offset = nodes.len() as u32 - 1;
+        let mut moved = subtree.nodes.into_iter().map(|node| WideChildren {
+            first_inner: node.first_inner + offset,
+            ..node
+        });
+        let place = &mut nodes[root.wide as usize];
+        *place = moved.next().unwrap_or(*place);
+        nodes.extend(moved);
+    }
+    WideTopology { nodes, depth }
+}
+
+/// Wide nodes of a tree or a part of it.
+struct Emission {
+    /// The first is the root.
+    nodes: Vec<WideChildren>,
+    depth: u32,
+    /// Those that were left to be filled, in order.
+    unfilled: Vec<Unfilled>,
+}
+
+impl Unfilled {
+    const ROOT: Unfilled = Unfilled {
+        wide: 0,
+        root: 0,
+        level: 1,
+    };
+}
+
+impl Emission {
+    fn new() -> Emission {
+        let root = WideChildren {
             children: [0; WIDTH],
             count: 0,
-            first_inner: nodes.len() as u32,
+            first_inner: 1,
         };
-        open(tree, choices, root, &mut children);
-        nodes[wide] = children;
-        for &child in children.children() {
-            if !tree.nodes[child as usize].is_leaf() {
-                stack.push((nodes.len(), child, level + 1));
-                nodes.push(children);
+        Emission {
+            nodes: vec![root],
+            depth: 1,
+            unfilled: vec![],
+        }
+    }
+
+    /// Fills a root and what is below it, or leaves that out where there are no more leaves than `limit`;
+    /// with a limit of [`u32::MAX`] nothing is left out.
+    fn fill(&mut self, tree: &BinaryTree, choices: &[Choices], root: Unfilled, limit: u32) {
+        let mut stack = vec![root];
+        while let Some(next) = stack.pop() {
+            if limit != u32::MAX && tree.nodes[next.root as usize].leaves <= limit {
+                self.unfilled.push(next);
+                continue;
+            }
+            self.depth = self.depth.max(next.level);
+            let mut children = WideChildren {
+                children: [0; WIDTH],
+                count: 0,
+                first_inner: self.nodes.len() as u32,
+            };
+            open(tree, choices, next.root, &mut children);
+            self.nodes[next.wide as usize] = children;
+            for &child in children.children() {
+                if !tree.nodes[child as usize].is_leaf() {
+                    stack.push(Unfilled {
+                        wide: self.nodes.len() as u32,
+                        root: child,
+                        level: next.level + 1,
+                    });
+                    self.nodes.push(children);
+                }
             }
         }
     }
-    WideTopology { nodes, depth }
 }
 
 /// Lists the children of the wide node that stands for a binary node.
