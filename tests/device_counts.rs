@@ -1,4 +1,4 @@
-//! What `--stats` counts on the device: the same elements that the traversal on the host looks at.
+//! What `--stats` counts on the device: the elements that the traversal on the host looks at.
 
 mod accel_common;
 mod device_common;
@@ -45,22 +45,33 @@ fn on_the_device(bvh: &Bvh, rays: &[Ray]) -> Vec<[u32; 4]> {
     )
 }
 
-/// Where the device rounds otherwise, one ray in a hundred may go another way.
+/// On the device the distance of the closest hit so far is known by its upper bound: it may look at a
+/// few elements more. Where it rounds otherwise, one ray in a hundred may go another way.
 fn check(name: &str, mesh: &[[Vec3; 3]], list_limit: usize) {
     let bvh = build(mesh, list_limit);
     let mut random = Random(7);
     let rays: Vec<Ray> = (0..RAYS).map(|_| nasty_ray(mesh, &mut random)).collect();
     let found = on_the_device(&bvh, &rays);
-    let others = rays.iter().zip(&found);
-    let others = others.filter(|(ray, counts)| on_the_host(&bvh, ray) != **counts);
+    let expected: Vec<_> = rays.iter().map(|ray| on_the_host(&bvh, ray)).collect();
+    let as_few = |[n, p, any_n, any_p]: [u32; 4], e: [u32; 4]| {
+        n >= e[0] && p >= e[1] && [any_n, any_p] == [e[2], e[3]]
+    };
+    let others = found
+        .iter()
+        .zip(&expected)
+        .filter(|&(&f, &e)| !as_few(f, e));
     let allowed = if rounds_as_the_host() { 0 } else { RAYS / 100 };
     let count = others.count();
     assert!(
         count <= allowed,
         "{name}: {count} of {RAYS} rays have other counts"
     );
-    let sum: u64 = found.iter().flatten().map(|&n| u64::from(n)).sum();
-    assert!(sum > RAYS as u64, "{name}: {sum} elements for all rays");
+    let sum = |counts: &[[u32; 4]]| counts.iter().flatten().map(|&n| u64::from(n)).sum::<u64>();
+    let (found, expected) = (sum(&found), sum(&expected));
+    assert!(
+        expected > RAYS as u64 && found.abs_diff(expected) * 100 < expected,
+        "{name}: {found} elements for all rays, the host has {expected}"
+    );
 }
 
 #[test]

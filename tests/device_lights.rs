@@ -227,10 +227,7 @@ fn lights_are_chosen_with_their_probabilities() {
 fn wrong_choices_of_lights_are_rejected() {
     let mut bench = Bench::new(&many_lights(), Vec3::new(2.0, 0.0, 0.1), Vec3::Y);
     let probabilities = light_probabilities(&bench);
-    let (from, to) = (
-        ">= lights[index].threshold",
-        ">= 0.9 * lights[index].threshold",
-    );
+    let (from, to) = ("< light.threshold", "< 0.9 * light.threshold");
     bench.setup = bench.setup.patched("light.wgsl", from, to);
     let drawn = bench.draw("sample_any", 5);
     assert_rejected(

@@ -404,7 +404,8 @@ fn a_leaky_traversal_is_noticed() {
     let to = "return select(difference, -1.0, difference == 0.0);";
     let setup = Setup::new().patched("geometry/triangle.wgsl", from, to);
     assert!(escapes(&setup, &cube(8), TREE, 1.0, Vec3::ZERO).0 > 0);
-    let (from, to) = ("(e.x < 0.0 || e.y < 0.0", "(e.x <= 0.0 || e.y < 0.0");
+    let from = "(e.x < 0.0 || e.y < 0.0 || e.z < 0.0)";
+    let to = "(e.x <= 0.0 || e.y <= 0.0 || e.z <= 0.0)";
     let setup = Setup::new().patched("geometry/triangle.wgsl", from, to);
     assert!(escapes(&setup, &cube(2), LIST, 1.0, Vec3::ZERO).0 > 0);
 }
