@@ -14,7 +14,7 @@ use divan::Bencher;
 use etendue::accel::Preset;
 use etendue::accel::binary::BinaryTree;
 use etendue::accel::pair::pairs;
-use meshes::{Mesh, NAMES, mesh};
+use meshes::{Mesh, mesh, names};
 
 const THREADS: usize = 2;
 
@@ -24,59 +24,57 @@ fn main() {
     let is_timed = std::env::args().any(|argument| argument == "--bench");
     let is_filtered = std::env::args().nth(2).is_some();
     if is_timed && !is_filtered {
-        NAMES
-            .iter()
-            .filter_map(|name| mesh(name))
+        names()
+            .into_iter()
+            .filter_map(mesh)
             .for_each(|mesh| quality::print(&mesh));
     }
     divan::main();
 }
 
-/// Runs a builder over a mesh that is there; one that is not (no `ETENDUE_SHARED`) takes no time.
+/// Runs a builder over a mesh.
 fn time<T>(bencher: Bencher, name: &str, build: impl Fn(&Mesh) -> T + Sync) {
-    match mesh(name) {
-        Some(mesh) => bencher.bench(|| build(&mesh)),
-        None => bencher.bench(|| ()),
-    }
+    let mesh = mesh(name).expect("it is among the names");
+    bencher.bench(|| build(&mesh));
 }
 
 /// What the trees are built over, found first.
-#[divan::bench(args = NAMES, sample_size = 1)]
+#[divan::bench(args = names(), sample_size = 1)]
 fn match_pairs(bencher: Bencher, name: &str) {
     time(bencher, name, |mesh| pairs(&mesh.triangles));
 }
 
-#[divan::bench(args = NAMES, sample_size = 1)]
+#[divan::bench(args = names(), sample_size = 1)]
 fn fast(bencher: Bencher, name: &str) {
     time(bencher, name, |mesh| {
         BinaryTree::build(&mesh.boxes, Preset::Fast)
     });
 }
 
-#[divan::bench(args = NAMES, sample_size = 1)]
+#[divan::bench(args = names(), sample_size = 1)]
 fn balanced(bencher: Bencher, name: &str) {
     time(bencher, name, |mesh| {
         BinaryTree::build(&mesh.boxes, Preset::Balanced)
     });
 }
 
-#[divan::bench(args = NAMES, sample_size = 1, sample_count = 3)]
+#[divan::bench(args = names(), sample_size = 1, sample_count = 3)]
 fn best(bencher: Bencher, name: &str) {
     time(bencher, name, |mesh| {
         BinaryTree::build(&mesh.boxes, Preset::Best)
     });
 }
 
-#[divan::bench(args = NAMES, sample_size = 1)]
+#[divan::bench(args = names(), sample_size = 1)]
 fn collapse(bencher: Bencher, name: &str) {
-    let Some(mesh) = mesh(name) else { return };
+    let mesh = mesh(name).expect("it is among the names");
     let tree = BinaryTree::build(&mesh.boxes, Preset::Balanced);
     bencher.bench(|| tree.collapse());
 }
 
 macro_rules! obvhs {
     ($name:ident, $samples:expr) => {
-        #[divan::bench(args = NAMES, sample_size = 1, sample_count = $samples)]
+        #[divan::bench(args = names(), sample_size = 1, sample_count = $samples)]
         fn $name(bencher: Bencher, name: &str) {
             time(bencher, name, |mesh| {
                 peers::build(&mesh.boxes, stringify!($name))
@@ -87,7 +85,7 @@ macro_rules! obvhs {
 
 /// The same boxes in the crate `obvhs`.
 mod obvhs {
-    use super::{Bencher, NAMES, peers, time};
+    use super::{Bencher, names, peers, time};
     obvhs!(very_fast, 100);
     obvhs!(fast, 100);
     obvhs!(medium, 100);

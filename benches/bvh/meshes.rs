@@ -11,14 +11,22 @@ use std::path::Path;
 
 pub type Triangle = [Vec3; 3];
 
+const MODEL: &str = "FlightHelmet";
+
 /// Bumpy spheres in a box with so many triangles, triangles of all sizes at random places, a model.
-pub const NAMES: [&str; 5] = [
+const NAMES: [&str; 5] = [
     "spheres 10k",
     "spheres 100k",
     "spheres 1M",
     "soup 200k",
-    "FlightHelmet",
+    MODEL,
 ];
+
+/// Those that are there: the model needs `ETENDUE_SHARED`.
+pub fn names() -> Vec<&'static str> {
+    let is_there = |name: &&str| *name != MODEL || model(name).is_some();
+    NAMES.into_iter().filter(is_there).collect()
+}
 
 pub struct Mesh {
     pub name: String,
