@@ -133,8 +133,7 @@ struct Closest {
 fn test_pair(
   e: Element, index: u32, ray: Ray, setup: RaySetup, so_far: Closest, camera_ray: bool, seed: u32,
 ) -> Closest {
-  let v = pair_vertices(e);
-  let fan = fan_candidates(setup, v.v0, v.v1, v.v2, v.v3);
+  let fan = pair_fan(e, setup);
   var best = so_far;
   if (fan.first || fan.second) {
     let second = !fan.first;

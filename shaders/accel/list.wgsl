@@ -53,8 +53,7 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
 // The hit on a triangle. Beside an edge the quick test may have left open what the exact one denies:
 // there the quick values are the hit, lest none of the triangles at the edge be met.
 fn refine(triangle: u32, setup: RaySetup) -> Hit {
-  let v = pair_vertices(load_element(triangle >> 1u));
-  let fan = fan_candidates(setup, v.v0, v.v1, v.v2, v.v3);
+  let fan = pair_fan(load_element(triangle >> 1u), setup);
   let second = (triangle & 1u) != 0u;
   let s = fan_triangle(fan, second);
   var hit = refined_hit(s);

@@ -87,9 +87,14 @@ fn occluded(ray: Ray, seed: u32) -> bool {
   return ask(Query(ray, false, false, 0u, ray, true, seed)).occluded;
 }
 
+// The triangles of a pair in a ray's own space.
+fn pair_fan(pair: Element, setup: RaySetup) -> FanCandidates {
+  let v = pair_vertices(pair);
+  return fan_candidates(setup, v.v0, v.v1, v.v2, v.v3);
+}
+
 // The hit of a ray on a triangle that it meets.
 fn refined_hit_on(triangle: u32, setup: RaySetup) -> TriangleHit {
-  let v = pair_vertices(load_element(triangle >> 1u));
-  let fan = fan_candidates(setup, v.v0, v.v1, v.v2, v.v3);
+  let fan = pair_fan(load_element(triangle >> 1u), setup);
   return refined_hit(fan_triangle(fan, (triangle & 1u) != 0u));
 }

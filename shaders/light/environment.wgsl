@@ -16,7 +16,8 @@ fn environment_light(normal: vec3f, direction: vec3f) -> EnvironmentLight {
     let sin_theta = length(d.xz);
     let u = 0.5 + arctan2(d.z, d.x) * INV_2PI;
     let v = arctan2(sin_theta, d.y) * INV_PI;
-    let cell = environment_cell(environment_at(vec2f(u, v)));
+    let point = environment_at(vec2f(u, v));
+    let cell = environment_interpolate(environment_corners(point.cell), point.inside);
     return EnvironmentLight(frame.environment_radiance * cell.radiance, environment_pdf(cell.density, sin_theta));
 }
 
@@ -160,10 +161,6 @@ fn environment_interpolate(c: EnvironmentCorners, inside: vec2f) -> EnvironmentV
     let radiance = mix(top, bottom, inside.y);
     let mean = luminance(0.25 * c.top_left + 0.25 * c.top_right + 0.25 * c.bottom_left + 0.25 * c.bottom_right);
     return EnvironmentValue(radiance, select(0.0, c.density * (luminance(radiance) / mean), mean > 0.0));
-}
-
-fn environment_cell(point: EnvironmentPoint) -> EnvironmentValue {
-    return environment_interpolate(environment_corners(point.cell), point.inside);
 }
 
 // d(omega) = 2 pi^2 sin(theta) du dv.

@@ -44,6 +44,11 @@ pub struct Pair {
 }
 
 impl Pair {
+    /// Its one or two triangles.
+    pub fn triangles(&self) -> impl Iterator<Item = Turned> + use<> {
+        [Some(self.first), self.second].into_iter().flatten()
+    }
+
     /// The fan's vertices; without a second triangle the fourth is the first again.
     pub fn vertices(&self, triangles: &[[Vec3; 3]]) -> [Vec3; 4] {
         let at = |t: Turned| t.corners(triangles[t.triangle as usize]);

@@ -39,8 +39,11 @@ fn list(pairs: &[Pair], triangles: &[[Vec3; 3]]) -> Bvh {
     for pair in pairs {
         let id = 2 * elements.len() as u32;
         elements.push(Element::pair(pair.vertices(triangles), order.len() as u32));
-        let turned = [Some(pair.first), pair.second].into_iter().flatten();
-        order.extend((id..).zip(turned).map(|(id, turned)| Placed { turned, id }));
+        order.extend(
+            (id..)
+                .zip(pair.triangles())
+                .map(|(id, turned)| Placed { turned, id }),
+        );
     }
     Bvh {
         elements,
@@ -145,10 +148,7 @@ impl Emission<'_> {
     /// The children of wide nodes, and the triangles in these.
     fn sizes(&self, nodes: Range<usize>) -> (usize, usize) {
         let children = self.topology.nodes[nodes].iter().map(|n| n.children());
-        let triangles = |&child: &u32| match self.pair(child) {
-            Some(pair) => 1 + usize::from(pair.second.is_some()),
-            None => 0,
-        };
+        let triangles = |&child: &u32| self.pair(child).map_or(0, |p| p.triangles().count());
         children.fold((0, 0), |(all, sum), children| {
             let here: usize = children.iter().map(triangles).sum();
             (all + children.len(), sum + here)
@@ -176,8 +176,8 @@ impl Emission<'_> {
             }
             for (pair, (element, index)) in pairs.zip(elements.by_ref()) {
                 *element = Element::pair(pair.vertices(self.triangles), position);
-                let turned = [Some(pair.first), pair.second].into_iter().flatten();
-                for ((id, turned), placed) in (2 * index..).zip(turned).zip(order.by_ref()) {
+                let turned = (2 * index..).zip(pair.triangles());
+                for ((id, turned), placed) in turned.zip(order.by_ref()) {
                     *placed = Placed { turned, id };
                     position += 1;
                 }

@@ -10,8 +10,7 @@ pub const CDF_ONE: u32 = 1 << 31;
 ///
 /// The weights, at most 2³⁰ of them, are finite, not negative, and so is their sum.
 pub fn fixed_point_cdf(weights: &[f64], cdf: &mut [u32]) -> f64 {
-    let sum = |iter: &mut dyn Iterator<Item = &f64>| iter.fold(0.0, |sum, w| sum + w);
-    let total: f64 = sum(&mut weights.iter());
+    let total: f64 = weights.iter().sum();
     let positive = weights.iter().filter(|w| **w > 0.0).count() as u32;
     // One unit for each positive weight, and the rest in proportion.
     let rest = f64::from(CDF_ONE - positive);

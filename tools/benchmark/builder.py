@@ -98,9 +98,7 @@ def embree_row(scene, size, rounds):
     python = install.embree()
     command = [python, "-m", "benchmark.peer_embree", scene_writer.path_of(scene), size, size, rounds]
     environment = os.environ | {"PYTHONPATH": str(TOOLS), "PYTHONDONTWRITEBYTECODE": "1"}
-    answer = json.loads(install.run(command, "embreex failed", environment))
-    rates = answer["rays_per_second"]
-    return {"scene": scene, "builder": "embree", **answer, "rays_per_second": rates}
+    return {"scene": scene, "builder": "embree", **json.loads(install.run(command, "embreex failed", environment))}
 
 
 def markdown(rows, rounds, spp, size):

@@ -29,7 +29,7 @@ def measure(command, threads, scenes, rounds, spp):
         for name, (integrator, flags, _) in PASSES.items():
             install.say(f"gpu: {scene}, counting {name} rays")
             report = etendue.render(1, 0, SIZE, integrator=integrator, stats=True, **flags)["report"]
-            counts[name] = (report["rays"]["closest"] + report["rays"]["any"]) / (SIZE[0] * SIZE[1])
+            counts[name] = report["rays"]
         for i in range(rounds):
             install.say(f"gpu: {scene}, round {i + 1} of {rounds}")
             for name, (integrator, flags, _) in PASSES.items():
@@ -38,12 +38,15 @@ def measure(command, threads, scenes, rounds, spp):
     return rows
 
 
-def row(scene, name, rays, seconds, spp, about):
-    samples = SIZE[0] * SIZE[1] * spp
+def row(scene, name, counts, seconds, spp, about):
+    """counts: the report's rays of one sample a pixel."""
+    pixels = SIZE[0] * SIZE[1]
+    rays, samples = (counts["closest"] + counts["any"]) / pixels, pixels * spp
     middle = statistics.median(seconds)
     return {
         "scene": scene,
         "pass": name,
+        "rays": counts,
         "rays_per_sample": rays,
         "seconds": list(seconds),
         "rays_per_second": rays * samples / middle,

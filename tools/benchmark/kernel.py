@@ -74,30 +74,23 @@ def measure(command, threads, scenes, rounds, spp, bandwidth, tflops):
     rows = []
     for scene in scenes:
         etendue = Etendue(command, scene_writer.path_of(scene), threads)
-        timed = gpu.measure(command, threads, [scene], rounds, spp)
-        for name, (integrator, flags, _) in gpu.PASSES.items():
-            install.say(f"kernel: {scene}, {name}")
+        for timed in gpu.measure(command, threads, [scene], rounds, spp):
+            integrator, flags, _ = gpu.PASSES[timed["pass"]]
+            install.say(f"kernel: {scene}, {timed['pass']}")
             module = compiled(etendue, integrator, flags)
-            report = etendue.render(1, 0, gpu.SIZE, integrator=integrator, stats=True, **flags)["report"]
             found = parts(module)
-            ray_bytes, operations = per_ray(found, report["rays"])
-            times = next(row for row in timed if row["pass"] == name)
+            ray_bytes, operations = per_ray(found, timed["rays"])
             by_bytes, by_operations = limits(ray_bytes, operations, bandwidth, tflops)
             rows.append(
-                {
-                    "scene": scene,
-                    "pass": name,
+                {key: timed[key] for key in ("scene", "pass", "rays", "rays_per_second", "device", "driver")}
+                | {
                     "parts": {part: dict(count) for part, count in found.items()},
-                    "rays": report["rays"],
                     "bytes_per_ray": ray_bytes,
                     "operations_per_ray": operations,
                     "workgroup_bytes": module.variable_bytes("workgroup"),
                     "private_bytes": module.variable_bytes("private"),
                     "limit_by_bandwidth": by_bytes,
                     "limit_by_arithmetic": by_operations,
-                    "rays_per_second": times["rays_per_second"],
-                    "device": times["device"],
-                    "driver": times["driver"],
                 }
             )
     return rows

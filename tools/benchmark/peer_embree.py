@@ -89,8 +89,10 @@ def measure(path, width, height, rounds):
     """Medians: build seconds, rays per second of each kind with one thread and with two."""
     source = scene_reader.read(path)
     triangles = corners(source)
-    builds = [build(triangles)[1] for _ in range(rounds)]
-    (scene, _mesh), _ = build(triangles)
+    builds = []
+    for _ in range(rounds):
+        (scene, _mesh), seconds = build(triangles)
+        builds.append(seconds)
     first = primary_rays(source, width, height)
     answer = scene.run(*first, query="INTERSECT", output=1)
     kinds = {"primary": first, "bounce": bounce_rays(triangles, first, answer)}
