@@ -16,4 +16,6 @@
 @group(0) @binding(7) var<storage, read> punctual_lights: array<PunctualLight>;
 // Linear value of each 8-bit sRGB code.
 @group(0) @binding(8) var<storage, read> srgb_to_linear: array<f32>;
+// Albedos of lobes (bsdf/albedo.wgsl) and wavelengths (medium.wgsl).
+@group(0) @binding(10) var<storage, read> bsdf_tables: array<f32>;
 @group(0) @binding(9) var<storage, read_write> element_counts: ElementCounts;

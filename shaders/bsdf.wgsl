@@ -1,13 +1,91 @@
-// The layered BSDF of glTF 2.0 (appendix B): a GGX specular layer over a Lambertian base; both
-// lobes share the half vector's Fresnel term, so that what the layer reflects the base does not
-// receive. All directions are local: z is the shading normal, and both are above the surface.
+// The layered BSDF of glTF and its extensions. From the top: clear coat, sheen, a GGX specular layer
+// (perhaps under a thin film), and below it what is diffuse or passes through. A layer leaves to those
+// below what it does not reflect itself, by its directional albedo at wo (Turquin 2019, Practical Multiple
+// Scattering Compensation for Microfacet Models): so a white material reflects all that arrives, whatever
+// its layers. All directions are local: z is the shading normal, on the side of wo.
 
-#include "material.wgsl"
+#include "bsdf/albedo.wgsl"
+#include "bsdf/clearcoat.wgsl"
 #include "bsdf/diffuse.wgsl"
+#include "bsdf/fresnel.wgsl"
 #include "bsdf/ggx.wgsl"
+#include "bsdf/iridescence.wgsl"
+#include "bsdf/sheen.wgsl"
+#include "bsdf/transmission.wgsl"
+
+// Whether light that bounces between microfacets is put back. Without it a rough white metal reflects as
+// little as 0.31 of what arrives, as GGX in most renderers does.
+override MULTIPLE_SCATTERING: bool = true;
+
+// Whether light goes through any surface.
+const TRANSMITS: bool = HAS_TRANSMISSION || HAS_DIFFUSE_TRANSMISSION;
+
+// What a material is at a point, seen from one side.
+struct BsdfParameters {
+    base_color: vec3f,
+    metallic: f32,
+    // Perceptual, in [0, 1].
+    roughness: f32,
+    // GGX alpha along the local x and y axes.
+    alpha: vec2f,
+    // Index of refraction: of the far side over the near one, or, if nothing is transmitted, of the layer.
+    // 0 stands for Schlick's term.
+    eta: f32,
+    // Strength and colour of the dielectric reflection.
+    specular: f32,
+    specular_color: vec3f,
+    // First numbers of the tables for eta; glass_table is that of its side.
+    albedo_table: u32,
+    glass_table: u32,
+    transmission: f32,
+    thin: bool,
+    diffuse_transmission: f32,
+    diffuse_transmission_color: vec3f,
+    clearcoat: f32,
+    clearcoat_roughness: f32,
+    clearcoat_normal: vec3f,
+    sheen_color: vec3f,
+    sheen_roughness: f32,
+    film: Film,
+}
+
+// Lobes with their weights for one wo.
+struct Bsdf {
+    // Reflectances of the Lambertian lobes on either side.
+    diffuse: vec3f,
+    diffuse_transmission: vec3f,
+    // The specular lobe's reflectance towards a half vector at a cosine c: f0 + dielectric * dielectric_weight(c)
+    // + metal * schlick_weight(c).
+    alpha: vec2f,
+    eta: f32,
+    f0: vec3f,
+    dielectric: vec3f,
+    metal: vec3f,
+    // Weight of what the specular layer lets pass, 1 - passing_f0 - passing_f90 * dielectric_weight(c).
+    transmission: vec3f,
+    thin: bool,
+    passing_f0: f32,
+    passing_f90: f32,
+    // A film adds its reflectance over a dielectric and over a metal, given by what these reflect at normal
+    // incidence, times weights; its strength is how much of the light that would pass it changes.
+    film: Film,
+    film_f0: vec3f,
+    film_weight: vec3f,
+    film_metal_f0: vec3f,
+    film_metal_weight: vec3f,
+    coat: Clearcoat,
+    sheen: vec3f,
+    sheen_alpha: f32,
+    // Probabilities that bsdf_sample draws from a lobe; the rest is the diffuse lobe's.
+    p_specular: f32,
+    p_transmission: f32,
+    p_coat: f32,
+    p_sheen: f32,
+    p_diffuse_transmission: f32,
+}
 
 struct BsdfSample {
-    // Local direction; its z is 0 if there is none.
+    // Local direction, below the surface if it is transmitted; its z is 0 if there is none.
     wi: vec3f,
     // f * |cos| / pdf.
     weight: vec3f,
@@ -17,92 +95,361 @@ struct BsdfSample {
     delta: bool,
 }
 
-// Schlick's Fresnel term between the reflectances at normal and at grazing incidence.
-fn schlick(f0: vec3f, f90: f32, cos_theta: f32) -> vec3f {
-    return f0 + (vec3f(f90) - f0) * schlick_weight(cos_theta);
+fn bsdf_of(m: BsdfParameters, wo: vec3f) -> Bsdf {
+    var bsdf: Bsdf;
+    bsdf.alpha = m.alpha;
+    bsdf.eta = m.eta;
+    bsdf.thin = m.thin;
+    // What the layers above leave.
+    var below = vec3f(1.0);
+    if (HAS_CLEARCOAT && m.clearcoat > 0.0) {
+        below *= add_clearcoat(&bsdf, m, wo);
+    }
+    if (HAS_SHEEN && max_component(m.sheen_color) > 0.0) {
+        bsdf.sheen_alpha = m.sheen_roughness * m.sheen_roughness;
+        bsdf.sheen = below * m.sheen_color;
+        let albedo = albedo_at(ALBEDO_SHEEN, wo.z, m.sheen_roughness);
+        below *= max(0.0, 1.0 - max_component(m.sheen_color) * albedo);
+    }
+    var base = (1.0 - m.metallic) * below;
+    if (HAS_SPECULAR) {
+        base *= add_specular(&bsdf, m, wo, below);
+    }
+    var reflected = m.base_color;
+    if (HAS_TRANSMISSION) {
+        bsdf.transmission *= m.base_color;
+        reflected *= 1.0 - m.transmission;
+    }
+    if (HAS_DIFFUSE_TRANSMISSION) {
+        let passing = (1.0 - m.transmission) * m.diffuse_transmission;
+        bsdf.diffuse_transmission = base * passing * m.diffuse_transmission_color;
+        reflected *= 1.0 - m.diffuse_transmission;
+    }
+    bsdf.diffuse = base * reflected;
+    choose_probabilities(&bsdf, wo);
+    return bsdf;
 }
 
-fn schlick_weight(cos_theta: f32) -> f32 {
-    let m = clamp(1.0 - cos_theta, 0.0, 1.0);
-    let m2 = m * m;
-    return m2 * m2 * m;
+// Adds the coat; gives what it leaves.
+fn add_clearcoat(bsdf: ptr<function, Bsdf>, m: BsdfParameters, wo: vec3f) -> f32 {
+    let alpha = m.clearcoat_roughness * m.clearcoat_roughness;
+    let cos_o = dot(wo, m.clearcoat_normal);
+    var albedo = clearcoat_fresnel(cos_o);
+    var compensation = 1.0;
+    if (!ggx_is_delta(vec2f(alpha))) {
+        let ggx = albedo_at(ALBEDO_GGX, cos_o, m.clearcoat_roughness);
+        compensation = 1.0 + CLEARCOAT_F0 * lost_share(ggx);
+        albedo = compensation * mix(CLEARCOAT_F0 * ggx, ggx, albedo_at(ALBEDO_SCHLICK, cos_o, m.clearcoat_roughness) / ggx);
+    }
+    (*bsdf).coat = Clearcoat(m.clearcoat * compensation, alpha, m.clearcoat_normal);
+    return 1.0 - m.clearcoat * albedo;
 }
 
-// The fraction that passes the specular layer to the diffuse base.
-fn diffuse_transmission(bsdf: Bsdf, cos_theta: f32) -> f32 {
-    return 1.0 - mix(bsdf.dielectric_f0, bsdf.dielectric_f90, schlick_weight(cos_theta));
+// What microfacets of albedo 1 lose, in units of what they keep.
+fn lost_share(ggx: f32) -> f32 {
+    return select(0.0, (1.0 - ggx) / ggx, MULTIPLE_SCATTERING);
+}
+
+// Adds the specular lobes, of which `above` is left; gives what a dielectric leaves to the diffuse base.
+fn add_specular(bsdf: ptr<function, Bsdf>, m: BsdfParameters, wo: vec3f, above: vec3f) -> f32 {
+    let normal = select(normal_reflectance(m.eta), 1.0, m.eta == 0.0);
+    let f0 = min(normal * m.specular_color, vec3f(1.0)) * m.specular;
+    let f90 = m.specular;
+    var ggx = 1.0;
+    var weight = dielectric_weight(wo.z, m.eta);
+    if (!ggx_is_delta(m.alpha)) {
+        ggx = albedo_at(ALBEDO_GGX, wo.z, m.roughness);
+        if (m.eta != 0.0) {
+            weight = albedo_at(m.albedo_table, wo.z, m.roughness) / ggx;
+        } else {
+            weight = albedo_at(ALBEDO_SCHLICK, wo.z, m.roughness) / ggx;
+        }
+    }
+    let lost = lost_share(ggx);
+    let for_metal = m.metallic * (1.0 + m.base_color * lost);
+    var of_dielectric = 1.0 + f0 * lost;
+    var albedo = max_component(of_dielectric * mix(f0, vec3f(f90), weight)) * ggx;
+    if (HAS_TRANSMISSION && m.transmission > 0.0) {
+        var glass = 1.0;
+        if (MULTIPLE_SCATTERING && !ggx_is_delta(m.alpha) && (m.thin || m.glass_table != NONE)) {
+            if (m.thin) {
+                glass = 1.0 / ggx;
+            } else {
+                glass = 1.0 / albedo_at(m.glass_table, wo.z, m.roughness);
+            }
+        }
+        (*bsdf).transmission = above * ((1.0 - m.metallic) * m.transmission * glass);
+        of_dielectric = mix(of_dielectric, vec3f(glass), m.transmission);
+    }
+    let for_dielectric = (1.0 - m.metallic) * of_dielectric;
+    (*bsdf).passing_f0 = max_component(f0);
+    (*bsdf).passing_f90 = f90 - max_component(f0);
+    var bare = above;
+    if (HAS_IRIDESCENCE && m.film.strength > 0.0) {
+        (*bsdf).film = m.film;
+        (*bsdf).film_f0 = f0;
+        (*bsdf).film_metal_f0 = m.base_color;
+        (*bsdf).film_weight = above * (m.film.strength * m.specular) * for_dielectric;
+        (*bsdf).film_metal_weight = above * m.film.strength * for_metal;
+        bare *= 1.0 - m.film.strength;
+        let film_albedo = max_component(film_reflectance(*bsdf, f0, wo.z)) * m.specular * ggx;
+        albedo = mix(albedo, max_component(of_dielectric) * film_albedo, m.film.strength);
+    }
+    (*bsdf).f0 = bare * (for_metal * m.base_color + for_dielectric * f0);
+    (*bsdf).metal = bare * (for_metal * (1.0 - m.base_color));
+    (*bsdf).dielectric = bare * (for_dielectric * (vec3f(f90) - f0));
+    return max(0.0, 1.0 - albedo);
+}
+
+// What a film over a base reflects; from inside of a solid as much as from where that light would go.
+fn film_reflectance(bsdf: Bsdf, f0: vec3f, cos_h: f32) -> vec3f {
+    if (bsdf.thin || bsdf.eta >= 1.0 || bsdf.eta == 0.0) {
+        return film_fresnel(bsdf.film, f0, cos_h);
+    }
+    if (reflects_totally(cos_h, bsdf.eta)) {
+        return vec3f(1.0);
+    }
+    let cos_outside = sqrt(max(0.0, 1.0 - (1.0 - cos_h * cos_h) / (bsdf.eta * bsdf.eta)));
+    return film_fresnel(bsdf.film, f0, cos_outside);
+}
+
+// The specular lobe's reflectance towards a half vector.
+fn specular_reflectance(bsdf: Bsdf, cos_h: f32) -> vec3f {
+    var reflectance = bsdf.f0 + bsdf.dielectric * dielectric_weight(cos_h, bsdf.eta) + bsdf.metal * schlick_weight(cos_h);
+    if (HAS_IRIDESCENCE && bsdf.film.strength > 0.0) {
+        reflectance += bsdf.film_weight * film_reflectance(bsdf, bsdf.film_f0, cos_h)
+            + bsdf.film_metal_weight * film_reflectance(bsdf, bsdf.film_metal_f0, cos_h);
+    }
+    return reflectance;
+}
+
+// What the specular layer lets pass towards a half vector.
+fn passing_share(bsdf: Bsdf, cos_h: f32) -> f32 {
+    if (reflects_totally(cos_h, bsdf.eta) && !bsdf.thin) {
+        return 0.0;
+    }
+    let bare = 1.0 - bsdf.passing_f0 - bsdf.passing_f90 * dielectric_weight(cos_h, bsdf.eta);
+    if (HAS_IRIDESCENCE && bsdf.film.strength > 0.0) {
+        let film = 1.0 - max_component(film_reflectance(bsdf, bsdf.film_f0, cos_h));
+        return mix(bare, film, bsdf.film.strength);
+    }
+    return bare;
 }
 
 fn has_specular(bsdf: Bsdf) -> bool {
-    return HAS_SPECULAR && max(max_component(bsdf.f0), bsdf.f90) > 0.0;
+    let reflectance = bsdf.f0 + bsdf.dielectric + bsdf.metal + bsdf.film_weight + bsdf.film_metal_weight;
+    return HAS_SPECULAR && max_component(reflectance) > 0.0;
 }
 
 fn specular_is_delta(bsdf: Bsdf) -> bool {
-    return bsdf.alpha < GGX_SMOOTHEST;
+    return ggx_is_delta(bsdf.alpha);
 }
 
-// Probability that the specular lobe is sampled: its share of an estimate of the albedo.
-fn specular_probability(bsdf: Bsdf, wo: vec3f) -> f32 {
-    if (!has_specular(bsdf)) {
+fn has_transmission(bsdf: Bsdf) -> bool {
+    return HAS_TRANSMISSION && max_component(bsdf.transmission) > 0.0;
+}
+
+fn bsdf_transmission_is_delta(bsdf: Bsdf) -> bool {
+    return transmission_is_delta(bsdf.alpha, bsdf.eta, bsdf.thin);
+}
+
+fn has_coat(bsdf: Bsdf) -> bool {
+    return HAS_CLEARCOAT && bsdf.coat.strength > 0.0;
+}
+
+fn has_sheen(bsdf: Bsdf) -> bool {
+    return HAS_SHEEN && max_component(bsdf.sheen) > 0.0;
+}
+
+// Lobes are drawn by their shares of an estimate of the albedo.
+fn choose_probabilities(bsdf: ptr<function, Bsdf>, wo: vec3f) {
+    let b = *bsdf;
+    let diffuse = luminance(b.diffuse);
+    var specular = 0.0;
+    var transmission = 0.0;
+    var coat = 0.0;
+    var sheen = 0.0;
+    var diffuse_transmission = 0.0;
+    if (has_specular(b)) {
+        specular = luminance(specular_reflectance(b, wo.z));
+    }
+    if (has_transmission(b)) {
+        transmission = luminance(b.transmission) * passing_share(b, wo.z);
+    }
+    if (has_coat(b)) {
+        coat = b.coat.strength * clearcoat_fresnel(dot(wo, b.coat.normal));
+    }
+    if (has_sheen(b)) {
+        sheen = luminance(b.sheen);
+    }
+    if (HAS_DIFFUSE_TRANSMISSION) {
+        diffuse_transmission = luminance(b.diffuse_transmission);
+    }
+    let wide = diffuse + diffuse_transmission;
+    // Beside a wide lobe none that is there is starved: it may be much brighter elsewhere.
+    let least = select(0.0, 0.1 * (wide + specular + transmission + coat + sheen), wide > 0.0);
+    specular = select(0.0, max(specular, least), has_specular(b));
+    coat = select(0.0, max(coat, least), has_coat(b));
+    sheen = select(0.0, max(sheen, least), has_sheen(b));
+    transmission = select(0.0, max(transmission, least), has_transmission(b));
+    let sum = max(wide, least) + specular + transmission + coat + sheen;
+    if (!(sum > 0.0)) {
+        return;
+    }
+    (*bsdf).p_specular = specular / sum;
+    (*bsdf).p_transmission = transmission / sum;
+    (*bsdf).p_coat = coat / sum;
+    (*bsdf).p_sheen = sheen / sum;
+    if (wide > 0.0) {
+        (*bsdf).p_diffuse_transmission = max(wide, least) / sum * (diffuse_transmission / wide);
+    }
+}
+
+// Probability of the diffuse lobe.
+fn p_diffuse(b: Bsdf) -> f32 {
+    if (max_component(b.diffuse) <= 0.0) {
         return 0.0;
     }
-    let specular = luminance(schlick(bsdf.f0, bsdf.f90, wo.z));
-    let diffuse = luminance(bsdf.diffuse) * diffuse_transmission(bsdf, wo.z);
-    if (specular + diffuse <= 0.0) {
-        return 1.0;
-    }
-    // No lobe that is there is starved.
-    return select(clamp(specular / (specular + diffuse), 0.1, 0.9), 1.0, max_component(bsdf.diffuse) <= 0.0);
+    return max(0.0, 1.0 - b.p_specular - b.p_transmission - b.p_coat - b.p_sheen - b.p_diffuse_transmission);
 }
 
-// BSDF without delta lobes, times the cosine of wi.
-fn bsdf_eval(bsdf: Bsdf, wo: vec3f, wi: vec3f) -> vec3f {
-    if (wi.z <= 0.0 || wo.z <= 0.0) {
-        return vec3f(0.0);
+// BSDF without delta lobes, times |cos| of wi, for radiance (refraction divides it by eta^2).
+fn bsdf_eval(b: Bsdf, wo: vec3f, wi: vec3f) -> vec3f {
+    if (wi.z > 0.0) {
+        return reflection_eval(b, wo, wi);
     }
-    let h = normalize(wo + wi);
-    let cos_h = dot(wi, h);
-    var f = diffuse_eval(bsdf.diffuse) * diffuse_transmission(bsdf, cos_h);
-    if (has_specular(bsdf) && !specular_is_delta(bsdf)) {
-        f += schlick(bsdf.f0, bsdf.f90, cos_h) * ggx_eval(bsdf.alpha, wo, wi, h);
+    var f = vec3f(0.0);
+    if (HAS_DIFFUSE_TRANSMISSION) {
+        f += diffuse_eval(b.diffuse_transmission) * -wi.z;
     }
-    return f * wi.z;
+    if (has_transmission(b) && !bsdf_transmission_is_delta(b)) {
+        let h = transmission_normal(wo, wi, b.eta, b.thin);
+        let share = passing_share(b, max(dot(wo, h), 0.0)) * radiance_scale(b);
+        f += b.transmission * (share * transmission_eval(b.alpha, b.eta, b.thin, wo, wi, h));
+    }
+    return f;
+}
+
+fn reflection_eval(b: Bsdf, wo: vec3f, wi: vec3f) -> vec3f {
+    var f = diffuse_eval(b.diffuse) * wi.z;
+    if (has_specular(b) && !specular_is_delta(b)) {
+        let h = normalize(wo + wi);
+        f += specular_reflectance(b, dot(wi, h)) * ggx_eval(b.alpha, wo, wi, h);
+    }
+    if (has_coat(b) && !clearcoat_is_delta(b.coat)) {
+        f += vec3f(clearcoat_eval(b.coat, wo, wi));
+    }
+    if (has_sheen(b)) {
+        f += b.sheen * sheen_eval(b.sheen_alpha, wo, wi);
+    }
+    return f;
+}
+
+// Radiance in a medium goes with the square of its index.
+fn radiance_scale(b: Bsdf) -> f32 {
+    return select(1.0 / (b.eta * b.eta), 1.0, b.thin);
 }
 
 // Density over solid angle with which bsdf_sample returns wi (delta lobes apart).
-fn bsdf_pdf(bsdf: Bsdf, wo: vec3f, wi: vec3f) -> f32 {
-    if (wi.z <= 0.0 || wo.z <= 0.0) {
-        return 0.0;
+fn bsdf_pdf(b: Bsdf, wo: vec3f, wi: vec3f) -> f32 {
+    if (wi.z > 0.0) {
+        return reflection_pdf(b, wo, wi);
     }
-    let p = specular_probability(bsdf, wo);
-    var pdf = (1.0 - p) * diffuse_pdf(wi);
-    if (p > 0.0 && !specular_is_delta(bsdf)) {
-        pdf += p * ggx_pdf(bsdf.alpha, wo, normalize(wo + wi));
+    var pdf = 0.0;
+    if (HAS_DIFFUSE_TRANSMISSION) {
+        pdf += b.p_diffuse_transmission * diffuse_pdf(vec3f(wi.xy, -wi.z));
+    }
+    if (b.p_transmission > 0.0 && !bsdf_transmission_is_delta(b)) {
+        let h = transmission_normal(wo, wi, b.eta, b.thin);
+        pdf += b.p_transmission * transmission_pdf(b.alpha, b.eta, b.thin, wo, wi, h);
     }
     return pdf;
 }
 
+fn reflection_pdf(b: Bsdf, wo: vec3f, wi: vec3f) -> f32 {
+    var pdf = p_diffuse(b) * diffuse_pdf(wi);
+    if (b.p_specular > 0.0 && !specular_is_delta(b)) {
+        pdf += b.p_specular * ggx_pdf(b.alpha, wo, normalize(wo + wi));
+    }
+    if (b.p_coat > 0.0 && !clearcoat_is_delta(b.coat)) {
+        pdf += b.p_coat * clearcoat_pdf(b.coat, wo, wi);
+    }
+    if (b.p_sheen > 0.0) {
+        pdf += b.p_sheen * sheen_pdf(wi);
+    }
+    return pdf;
+}
+
+fn no_bsdf_sample() -> BsdfSample {
+    return BsdfSample(vec3f(0.0), vec3f(0.0), 0.0, false);
+}
+
 // Draw a direction: `u` moves it inside a lobe, `u_lobe` chooses the lobe.
-fn bsdf_sample(bsdf: Bsdf, wo: vec3f, u: vec2f, u_lobe: f32) -> BsdfSample {
-    let p = specular_probability(bsdf, wo);
+fn bsdf_sample(b: Bsdf, wo: vec3f, u: vec2f, u_lobe: f32) -> BsdfSample {
     var wi: vec3f;
-    if (u_lobe < p) {
-        if (specular_is_delta(bsdf)) {
-            let mirror = vec3f(-wo.xy, wo.z);
-            return BsdfSample(mirror, schlick(bsdf.f0, bsdf.f90, wo.z) / p, 0.0, true);
+    var below = b.p_specular;
+    let in_specular = u_lobe < below;
+    let in_transmission = !in_specular && u_lobe < below + b.p_transmission;
+    below += b.p_transmission;
+    let in_coat = !in_specular && !in_transmission && u_lobe < below + b.p_coat;
+    below += b.p_coat;
+    let in_sheen = u_lobe >= below && u_lobe < below + b.p_sheen;
+    below += b.p_sheen;
+    if (HAS_SPECULAR && in_specular) {
+        if (specular_is_delta(b)) {
+            return BsdfSample(vec3f(-wo.xy, wo.z), specular_reflectance(b, wo.z) / b.p_specular, 0.0, true);
         }
-        wi = ggx_sample(bsdf.alpha, wo, u);
+        wi = ggx_sample(b.alpha, wo, u);
+    } else if (HAS_TRANSMISSION && in_transmission) {
+        if (bsdf_transmission_is_delta(b)) {
+            wi = transmission_direction(wo, b.eta, b.thin);
+            let weight = b.transmission * (passing_share(b, wo.z) * radiance_scale(b) / b.p_transmission);
+            return BsdfSample(wi, weight, 0.0, true);
+        }
+        wi = transmission_sample(b.alpha, b.eta, b.thin, wo, u);
+    } else if (HAS_CLEARCOAT && in_coat) {
+        if (clearcoat_is_delta(b.coat)) {
+            let weight = b.coat.strength * clearcoat_fresnel(dot(wo, b.coat.normal)) / b.p_coat;
+            wi = clearcoat_mirror(b.coat, wo);
+            return BsdfSample(vec3f(wi.xy, max(wi.z, 0.0)), vec3f(weight), 0.0, true);
+        }
+        wi = clearcoat_sample(b.coat, wo, u);
+    } else if (HAS_SHEEN && in_sheen) {
+        wi = sheen_sample(u);
+    } else if (HAS_DIFFUSE_TRANSMISSION && u_lobe < below + b.p_diffuse_transmission) {
+        let up = diffuse_sample(u);
+        wi = vec3f(up.xy, -up.z);
     } else {
         wi = diffuse_sample(u);
     }
-    let pdf = bsdf_pdf(bsdf, wo, wi);
-    if (!(pdf > 0.0)) {
-        return BsdfSample(vec3f(0.0), vec3f(0.0), 0.0, false);
+    // Lobes reflect or transmit, never both: what leaves on the wrong side is lost.
+    if ((in_specular || in_coat) && wi.z <= 0.0) {
+        return no_bsdf_sample();
     }
-    return BsdfSample(wi, bsdf_eval(bsdf, wo, wi) / pdf, pdf, false);
+    let pdf = bsdf_pdf(b, wo, wi);
+    if (wi.z == 0.0 || !(pdf > 0.0)) {
+        return no_bsdf_sample();
+    }
+    return BsdfSample(wi, bsdf_eval(b, wo, wi) / pdf, pdf, false);
 }
 
-// Whether any light that is not in the mirror direction is reflected.
-fn bsdf_has_smooth_part(bsdf: Bsdf) -> bool {
-    return max_component(bsdf.diffuse) > 0.0 || (has_specular(bsdf) && !specular_is_delta(bsdf));
+// Whether any light is scattered that does not keep to the direction of a mirror or of refraction.
+fn bsdf_has_smooth_part(b: Bsdf) -> bool {
+    return max_component(b.diffuse) > 0.0
+        || (has_specular(b) && !specular_is_delta(b))
+        || (has_coat(b) && !clearcoat_is_delta(b.coat))
+        || has_sheen(b)
+        || bsdf_has_smooth_transmission(b);
+}
+
+// Whether some lobe has a single direction.
+fn bsdf_has_delta(b: Bsdf) -> bool {
+    return (has_specular(b) && specular_is_delta(b))
+        || (has_transmission(b) && bsdf_transmission_is_delta(b))
+        || (has_coat(b) && clearcoat_is_delta(b.coat));
+}
+
+fn bsdf_has_smooth_transmission(b: Bsdf) -> bool {
+    return (HAS_DIFFUSE_TRANSMISSION && max_component(b.diffuse_transmission) > 0.0)
+        || (has_transmission(b) && !bsdf_transmission_is_delta(b));
 }

@@ -77,6 +77,15 @@ fn shadow_ray(s: Surface, light: LightSample) -> Ray {
     return ray;
 }
 
+// The share of a light sample's radiance that the medium on its side of the surface lets pass.
+fn transmittance_to(s: Surface, media: Media, crossing: Crossing, light: LightSample, wi: vec3f) -> vec3f {
+    if (!HAS_ABSORPTION) {
+        return vec3f(1.0);
+    }
+    let distance = select(stable_length(light.position - s.position), T_INFINITE, light.at_infinity);
+    return medium_transmittance(medium_of(select(media, crossing.media, wi.z < 0.0)), distance);
+}
+
 // 1 if a light sample's radiance reaches the surface, else 0; blended surfaces in between decide
 // by chance.
 fn visibility_of_light(s: Surface, light: LightSample, seed: u32) -> f32 {

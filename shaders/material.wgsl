@@ -1,21 +1,15 @@
 // From a material and its textures to the numbers that a BSDF needs.
 
 #include "surface.wgsl"
+#include "bsdf.wgsl"
+#include "medium.wgsl"
 
-// The parameters of glTF's appendix B layering, evaluated at a point.
-struct Bsdf {
-    // Diffuse reflectance, (1 - metallic) * base_color.
-    diffuse: vec3f,
-    // GGX alpha, the square of the perceptual roughness.
-    alpha: f32,
-    // Specular reflectance at normal incidence, dielectric and metal mixed.
-    f0: vec3f,
-    // Specular reflectance at grazing incidence, likewise.
-    f90: f32,
-    // Largest channel of the dielectric part at normal and grazing incidence: what the specular
-    // layer takes from the diffuse one.
-    dielectric_f0: f32,
-    dielectric_f90: f32,
+// The texture of a slot, or white.
+fn sample_slot(slot: TextureSlot, s: Surface) -> vec4f {
+    if (slot.texture == NONE) {
+        return vec4f(1.0);
+    }
+    return sample_texture(slot, s.uv0, s.uv1);
 }
 
 fn base_color_at(s: Surface) -> vec4f {
@@ -59,40 +53,120 @@ fn is_unlit(s: Surface) -> bool {
     return HAS_UNLIT && (materials[s.material].flags & MATERIAL_UNLIT) != 0u;
 }
 
-fn bsdf_at(s: Surface) -> Bsdf {
-    let base_color = base_color_at(s).rgb;
-    var metallic = materials[s.material].metallic;
-    var roughness = materials[s.material].roughness;
+// The BSDF at a surface, in the frame s.shading.
+fn bsdf_at(s: Surface, wo: vec3f, crossing: Crossing) -> Bsdf {
+    return bsdf_of(bsdf_parameters(s, crossing), wo);
+}
+
+fn bsdf_parameters(s: Surface, crossing: Crossing) -> BsdfParameters {
+    var m: BsdfParameters;
+    m.base_color = base_color_at(s).rgb;
+    m.metallic = materials[s.material].metallic;
+    m.roughness = materials[s.material].roughness;
     if (HAS_METALLIC_ROUGHNESS_TEXTURE) {
-        let slot = materials[s.material].metallic_roughness_texture;
-        if (slot.texture != NONE) {
-            let texel = sample_texture(slot, s.uv0, s.uv1);
-            roughness *= texel.g;
-            metallic *= texel.b;
-        }
+        let texel = sample_slot(materials[s.material].metallic_roughness_texture, s);
+        m.roughness *= texel.g;
+        m.metallic *= texel.b;
     }
-    var specular = materials[s.material].specular;
-    var specular_color = materials[s.material].specular_color;
+    m.eta = crossing.eta;
+    m.thin = true;
+    m.albedo_table = materials[s.material].albedo_table;
+    if (HAS_SPECULAR) {
+        add_specular_parameters(&m, s);
+    }
+    m.alpha = vec2f(m.roughness * m.roughness);
+    if (HAS_ANISOTROPY && s.anisotropy > 0.0) {
+        // Across the stretch a mirror is not smoother than single precision resolves.
+        m.alpha = vec2f(mix(m.alpha.x, 1.0, square(s.anisotropy)), max(m.alpha.y, ANISOTROPIC_SMOOTHEST));
+    }
+    if (HAS_TRANSMISSION) {
+        add_transmission_parameters(&m, s, crossing);
+    }
+    if (HAS_DIFFUSE_TRANSMISSION) {
+        add_diffuse_transmission_parameters(&m, s);
+    }
+    if (HAS_CLEARCOAT) {
+        add_clearcoat_parameters(&m, s);
+    }
+    if (HAS_SHEEN) {
+        add_sheen_parameters(&m, s);
+    }
+    if (HAS_IRIDESCENCE) {
+        m.film = film_at(s);
+    }
+    return m;
+}
+
+fn add_specular_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
+    (*m).specular = materials[s.material].specular;
+    (*m).specular_color = materials[s.material].specular_color;
     if (HAS_SPECULAR_TEXTURE) {
-        let slot = materials[s.material].specular_texture;
-        if (slot.texture != NONE) {
-            specular *= sample_texture(slot, s.uv0, s.uv1).a;
-        }
+        (*m).specular *= sample_slot(materials[s.material].specular_texture, s).a;
     }
     if (HAS_SPECULAR_COLOR_TEXTURE) {
-        let slot = materials[s.material].specular_color_texture;
-        if (slot.texture != NONE) {
-            specular_color *= sample_texture(slot, s.uv0, s.uv1).rgb;
+        let texel = sample_slot(materials[s.material].specular_color_texture, s);
+        (*m).specular_color *= texel.rgb;
+        if (HAS_GLOSSINESS_TEXTURE && (materials[s.material].flags & MATERIAL_GLOSSINESS) != 0u) {
+            (*m).roughness = 1.0 - (1.0 - (*m).roughness) * texel.a;
         }
     }
-    // KHR_materials_specular: the colour acts at normal incidence, the strength everywhere.
-    let f0 = min(materials[s.material].ior_f0 * specular_color, vec3f(1.0)) * specular;
-    var bsdf: Bsdf;
-    bsdf.diffuse = (1.0 - metallic) * base_color;
-    bsdf.alpha = roughness * roughness;
-    bsdf.f0 = mix(f0, base_color, metallic);
-    bsdf.f90 = mix(specular, 1.0, metallic);
-    bsdf.dielectric_f0 = max_component(f0);
-    bsdf.dielectric_f90 = specular;
-    return bsdf;
 }
+
+fn add_transmission_parameters(m: ptr<function, BsdfParameters>, s: Surface, crossing: Crossing) {
+    (*m).transmission = materials[s.material].transmission;
+    if (HAS_TRANSMISSION_TEXTURE) {
+        (*m).transmission *= sample_slot(materials[s.material].transmission_texture, s).r;
+    }
+    (*m).thin = !is_solid(s);
+    (*m).glass_table = materials[s.material].glass_table;
+    if (s.back_face && !(*m).thin) {
+        // The tables of the inside follow those of the outside.
+        (*m).glass_table += ALBEDO_SIZE;
+        (*m).albedo_table += ALBEDO_SIZE;
+    }
+    if (crossing.near != NONE && crossing.far != NONE) {
+        // The tables are for air on one side. Between two media the indices differ less, and so little is lost
+        // that nothing is put back.
+        (*m).glass_table = NONE;
+    }
+}
+
+fn add_diffuse_transmission_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
+    (*m).diffuse_transmission = materials[s.material].diffuse_transmission;
+    (*m).diffuse_transmission_color = materials[s.material].diffuse_transmission_color;
+    if (HAS_DIFFUSE_TRANSMISSION_TEXTURE) {
+        (*m).diffuse_transmission *= sample_slot(materials[s.material].diffuse_transmission_texture, s).a;
+        (*m).diffuse_transmission_color *= sample_slot(materials[s.material].diffuse_transmission_color_texture, s).rgb;
+    }
+}
+
+fn add_clearcoat_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
+    (*m).clearcoat = materials[s.material].clearcoat;
+    (*m).clearcoat_roughness = materials[s.material].clearcoat_roughness;
+    if (HAS_CLEARCOAT_TEXTURE) {
+        (*m).clearcoat *= sample_slot(materials[s.material].clearcoat_texture, s).r;
+        (*m).clearcoat_roughness *= sample_slot(materials[s.material].clearcoat_roughness_texture, s).g;
+    }
+    (*m).clearcoat_normal = to_local(s.shading, s.clearcoat_normal);
+}
+
+fn add_sheen_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
+    (*m).sheen_color = materials[s.material].sheen_color;
+    (*m).sheen_roughness = materials[s.material].sheen_roughness;
+    if (HAS_SHEEN_TEXTURE) {
+        (*m).sheen_color *= sample_slot(materials[s.material].sheen_color_texture, s).rgb;
+        (*m).sheen_roughness *= sample_slot(materials[s.material].sheen_roughness_texture, s).a;
+    }
+}
+
+fn film_at(s: Surface) -> Film {
+    var strength = materials[s.material].iridescence;
+    var thickness = materials[s.material].iridescence_thickness_max;
+    if (HAS_IRIDESCENCE_TEXTURE) {
+        strength *= sample_slot(materials[s.material].iridescence_texture, s).r;
+        let texel = sample_slot(materials[s.material].iridescence_thickness_texture, s);
+        thickness = mix(materials[s.material].iridescence_thickness_min, thickness, texel.g);
+    }
+    return Film(strength, materials[s.material].iridescence_ior, 1.0e-9 * thickness);
+}
+

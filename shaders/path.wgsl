@@ -2,6 +2,7 @@
 
 #include "light.wgsl"
 #include "bsdf.wgsl"
+#include "medium.wgsl"
 
 // Depth (edges) from which on paths may end by roulette, and the largest chance to go on.
 override ROULETTE_DEPTH: u32 = 5u;
@@ -36,12 +37,16 @@ struct Path {
     light: vec3f,
     light_seed: u32,
     shadow: Ray,
+    // The solids that the path is in, if HAS_MEDIA.
+    media: Media,
+    // Micrometres; 0 as long as the path stands for all wavelengths. Changes if HAS_DISPERSION.
+    wavelength: f32,
 }
 
 // A path along a ray from the camera.
 fn path_begin(camera_ray: Ray, sampler: ptr<function, Sampler>) -> Path {
     let last = LastBounce(vec3f(0.0), vec3f(0.0), 0.0, true);
-    return Path(vec3f(0.0), 0u, vec3f(1.0), (*sampler).dimension, camera_ray, last, vec3f(0.0), 0u, camera_ray);
+    return Path(vec3f(0.0), 0u, vec3f(1.0), (*sampler).dimension, camera_ray, last, vec3f(0.0), 0u, camera_ray, frame.media, 0.0);
 }
 
 // What to ask next: the ray along the next edge is traced together with the one to the light that
@@ -75,9 +80,12 @@ fn is_going(path: Path) -> bool {
 // Gathers light where the path has arrived, and chooses where it goes on.
 fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampler>) {
     let ray = (*path).ray;
-    let beta = (*path).beta;
+    var beta = (*path).beta;
     // Most ways out of here end the path.
     (*path).beta = vec3f(0.0);
+    if (HAS_ABSORPTION) {
+        beta *= medium_transmittance(medium_of((*path).media), hit.t * length(ray.direction));
+    }
     if (hit.triangle == NONE) {
         if (HAS_ENVIRONMENT) {
             let light = environment_light((*path).last.normal, ray.direction);
@@ -86,6 +94,11 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
         return;
     }
     let surface = surface_at(ray, hit);
+    var crossing = crossing_at((*path).media, (*path).wavelength, surface);
+    if (HAS_MEDIA && is_invisible(surface, crossing)) {
+        pass_invisible(path, beta, surface, crossing.media);
+        return;
+    }
     if (HAS_EMISSION || HAS_UNLIT) {
         let weight = surface_hit_weight(surface, (*path).last);
         (*path).L += beta * weight * emitted_radiance(surface);
@@ -93,10 +106,17 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
     if ((*path).depth >= min(frame.max_depth, MAX_EDGES) || is_unlit(surface)) {
         return;
     }
-    let bsdf = bsdf_at(surface);
+    if (HAS_DISPERSION && (*path).wavelength == 0.0 && is_dispersive(crossing)) {
+        // From here on the path stands for one wavelength.
+        (*sampler).dimension = (*path).first_dimension + ((*path).depth - 1u) * DIMENSIONS_PER_VERTEX + 5u;
+        beta *= sample_wavelength(next_1d(sampler), &(*path).wavelength);
+        crossing = crossing_at((*path).media, (*path).wavelength, surface);
+        (*sampler).dimension = (*path).first_dimension + ((*path).depth - 1u) * DIMENSIONS_PER_VERTEX;
+    }
     let wo = to_local(surface.shading, surface.wo);
+    let bsdf = bsdf_at(surface, wo, crossing);
     if (HAS_LIGHTS && bsdf_has_smooth_part(bsdf)) {
-        sample_direct(path, beta, surface, bsdf, wo, sampler);
+        sample_direct(path, beta, surface, crossing, bsdf, wo, sampler);
     }
     // Go on in a direction drawn from the BSDF.
     (*sampler).dimension = (*path).first_dimension + ((*path).depth - 1u) * DIMENSIONS_PER_VERTEX + 3u;
@@ -104,12 +124,35 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
     let choice = next_2d(sampler);
     let sample = bsdf_sample(bsdf, wo, u, choice.x);
     let wi = to_world(surface.shading, sample.wi);
-    if (sample.wi.z <= 0.0 || dot(wi, surface.normal) <= 0.0) {
+    if (!same_side(sample.wi, dot(wi, surface.normal))) {
         return;
+    }
+    if (HAS_MEDIA && sample.wi.z < 0.0) {
+        (*path).media = crossing.media;
     }
     (*path).beta = beta * sample.weight * roulette((*path).depth, beta * sample.weight, choice.y);
     (*path).last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta);
     (*path).ray = spawn_ray(surface, wi);
+}
+
+// Whether a local direction is on the side of the shading normal on which it is of the triangle's, to which
+// its cosine is given.
+fn same_side(wi: vec3f, cos_normal: f32) -> bool {
+    if (wi.z > 0.0) {
+        return cos_normal > 0.0;
+    }
+    return TRANSMITS && wi.z < 0.0 && cos_normal < 0.0;
+}
+
+// Goes straight through a surface that is not there to be seen. No light sample could have come this way.
+fn pass_invisible(path: ptr<function, Path>, beta: vec3f, s: Surface, media: Media) {
+    if ((*path).depth >= min(frame.max_depth, MAX_EDGES)) {
+        return;
+    }
+    (*path).beta = beta;
+    (*path).media = media;
+    (*path).last.alone = true;
+    (*path).ray = spawn_ray(s, -s.wo);
 }
 
 // Ends paths that carry little (0), and makes the survivors carry their share.
@@ -122,17 +165,20 @@ fn roulette(depth: u32, beta: vec3f, u: f32) -> f32 {
 }
 
 // Chooses a light, and what the path gains if the light can be seen.
-fn sample_direct(path: ptr<function, Path>, beta: vec3f, s: Surface, bsdf: Bsdf, wo: vec3f, sampler: ptr<function, Sampler>) {
+fn sample_direct(
+    path: ptr<function, Path>, beta: vec3f, s: Surface, crossing: Crossing, bsdf: Bsdf, wo: vec3f,
+    sampler: ptr<function, Sampler>,
+) {
     let seed = ray_seed(*sampler) ^ 0x5bd1e995u;
     let light = sample_light(s, sampler);
     if (!(light.pdf > 0.0) || (!light.delta && !LIGHT_SAMPLES)) {
         return;
     }
     let wi = to_local(s.shading, light.wi);
-    if (wi.z <= 0.0 || dot(light.wi, s.normal) <= 0.0) {
+    if (!same_side(wi, dot(light.wi, s.normal))) {
         return;
     }
-    var contribution = bsdf_eval(bsdf, wo, wi) * light.weight;
+    var contribution = bsdf_eval(bsdf, wo, wi) * light.weight * transmittance_to(s, (*path).media, crossing, light, wi);
     if (!light.delta && BSDF_SAMPLES) {
         contribution *= power_heuristic(light.pdf, bsdf_pdf(bsdf, wo, wi));
     }

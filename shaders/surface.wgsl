@@ -29,6 +29,10 @@ struct Surface {
     // Index into `lights`, or NONE.
     light: u32,
     back_face: bool,
+    // Normal of a clear coat, on the same side, if HAS_CLEARCOAT.
+    clearcoat_normal: vec3f,
+    // Stretch of highlights along the frame's x axis, if HAS_ANISOTROPY.
+    anisotropy: f32,
 }
 
 // Rounding errors in units of 2^-24 between a point that is interpolated on a triangle and a ray
@@ -102,23 +106,59 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
     (*s).uv0 = uv.xy;
     (*s).uv1 = uv.zw;
     normal = normalize_or(normal, geometric);
+    let smooth_normal = normal;
     if (HAS_NORMAL_TEXTURE) {
-        normal = normalize_or(perturb_normal(*s, normal, tangent), normal);
+        let slot = materials[(*s).material].normal_texture;
+        let scale = materials[(*s).material].normal_scale;
+        normal = normalize_or(perturb_normal(*s, slot, scale, normal, tangent), normal);
     }
-    orient(s, normal);
-}
-
-// Turn both normals towards the ray's origin.
-fn orient(s: ptr<function, Surface>, shading_normal: vec3f) {
     let side = select(1.0, -1.0, (*s).back_face);
     (*s).normal *= side;
-    var n = (*s).normal;
-    if (HAS_NORMALS || HAS_NORMAL_TEXTURE) {
-        // Normals that oppose the winding, a common mistake of exporters, are turned.
-        let towards = shading_normal * side;
-        n = reflecting_normal(n, select(towards, -towards, dot(towards, n) < 0.0), (*s).wo);
+    (*s).shading = frame_from_z(oriented(*s, normal, side));
+    if (HAS_CLEARCOAT) {
+        var coat = smooth_normal;
+        if (HAS_CLEARCOAT_NORMAL_TEXTURE) {
+            let slot = materials[(*s).material].clearcoat_normal_texture;
+            let scale = materials[(*s).material].clearcoat_normal_scale;
+            coat = normalize_or(perturb_normal(*s, slot, scale, coat, tangent), coat);
+        }
+        (*s).clearcoat_normal = oriented(*s, coat, side);
     }
-    (*s).shading = frame_from_z(n);
+    if (HAS_ANISOTROPY) {
+        turn_frame(s, smooth_normal, tangent);
+    }
+}
+
+// A shading normal turned towards the ray's origin, as the triangle's already is.
+fn oriented(s: Surface, shading_normal: vec3f, side: f32) -> vec3f {
+    if (!HAS_NORMALS && !HAS_NORMAL_TEXTURE && !HAS_CLEARCOAT_NORMAL_TEXTURE) {
+        return s.normal;
+    }
+    // Normals that oppose the winding, a common mistake of exporters, are turned.
+    let towards = shading_normal * side;
+    return reflecting_normal(s.normal, select(towards, -towards, dot(towards, s.normal) < 0.0), s.wo);
+}
+
+// Turns the shading frame so that its x axis runs along the stretch of highlights.
+fn turn_frame(s: ptr<function, Surface>, normal: vec3f, tangent: vec4f) {
+    let material = (*s).material;
+    var strength = materials[material].anisotropy;
+    if (strength == 0.0 || tangent.w == 0.0) {
+        return;
+    }
+    var direction = vec2f(materials[material].anisotropy_cos, materials[material].anisotropy_sin);
+    if (HAS_ANISOTROPY_TEXTURE && materials[material].anisotropy_texture.texture != NONE) {
+        let texel = sample_texture(materials[material].anisotropy_texture, (*s).uv0, (*s).uv1);
+        let d = texel.rg * 2.0 - 1.0;
+        direction = vec2f(direction.x * d.x - direction.y * d.y, direction.y * d.x + direction.x * d.y);
+        strength *= texel.b;
+    }
+    let bitangent = cross(normal, tangent.xyz) * sign(tangent.w);
+    let along = direction.x * tangent.xyz + direction.y * bitangent;
+    let z = (*s).shading.z;
+    let x = normalize_or(along - z * dot(z, along), (*s).shading.x);
+    (*s).shading = ShadingFrame(x, cross(z, x), z);
+    (*s).anisotropy = strength;
 }
 
 // The shading normal, bent so far that the mirror direction of wo lies above the surface. At the
@@ -137,12 +177,10 @@ fn reflecting_normal(geometric: vec3f, shading: vec3f, wo: vec3f) -> vec3f {
     return normalize_or(wo + lifted, geometric);
 }
 
-fn perturb_normal(s: Surface, normal: vec3f, tangent: vec4f) -> vec3f {
-    let slot = materials[s.material].normal_texture;
+fn perturb_normal(s: Surface, slot: TextureSlot, scale: f32, normal: vec3f, tangent: vec4f) -> vec3f {
     if (slot.texture == NONE || tangent.w == 0.0) {
         return normal;
     }
-    let scale = materials[s.material].normal_scale;
     let map = (sample_texture(slot, s.uv0, s.uv1).xyz * 2.0 - 1.0) * vec3f(scale, scale, 1.0);
     // The interpolated tangent is used as it is, as mikktspace prescribes.
     let bitangent = cross(normal, tangent.xyz) * sign(tangent.w);

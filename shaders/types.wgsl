@@ -37,6 +37,8 @@ struct Frame {
     // The row after the last one of this band.
     end_row: u32,
     pad0: u32,
+    // The solids around the camera (medium.wgsl).
+    media: vec4u,
 }
 
 // What one dispatch does.
@@ -131,22 +133,71 @@ struct Material {
     metallic: f32,
     specular_color: vec3f,
     roughness: f32,
-    // Dielectric reflectance at normal incidence, ((ior-1)/(ior+1))^2.
-    ior_f0: f32,
+    // Index of refraction, or 0: Schlick's term.
+    ior: f32,
     specular: f32,
     normal_scale: f32,
     alpha_cutoff: f32,
     // MATERIAL_* bits.
     flags: u32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
+    // Of two media at a point, the one of the larger rank is there.
+    medium_rank: u32,
+    // First number of the table of its Fresnel term in `bsdf_tables`.
+    albedo_table: u32,
+    // First number of the table of what passes or is reflected.
+    glass_table: u32,
+    // Colour of the light that passes diffusely.
+    diffuse_transmission_color: vec3f,
+    // Fraction of the diffuse light that passes.
+    diffuse_transmission: f32,
+    // Reflectance of the sheen.
+    sheen_color: vec3f,
+    // Perceptual roughness of the sheen.
+    sheen_roughness: f32,
+    // Absorption coefficient inside, 1/m.
+    absorption: vec3f,
+    // Fraction that passes below the specular layer.
+    transmission: f32,
+    // Coverage of the coat.
+    clearcoat: f32,
+    // Its perceptual roughness.
+    clearcoat_roughness: f32,
+    // Scale of its normal map.
+    clearcoat_normal_scale: f32,
+    // 20 / Abbe number.
+    dispersion: f32,
+    // Strength.
+    anisotropy: f32,
+    // Cosine of its angle from the tangent.
+    anisotropy_cos: f32,
+    // Sine.
+    anisotropy_sin: f32,
+    // Coverage of the film.
+    iridescence: f32,
+    // Index of the film.
+    iridescence_ior: f32,
+    // Its thickness in nm where its texture is 0.
+    iridescence_thickness_min: f32,
+    // And where it is 1.
+    iridescence_thickness_max: f32,
+    pad0: f32,
     base_color_texture: TextureSlot,
     metallic_roughness_texture: TextureSlot,
     normal_texture: TextureSlot,
     emissive_texture: TextureSlot,
     specular_texture: TextureSlot,
     specular_color_texture: TextureSlot,
+    transmission_texture: TextureSlot,
+    diffuse_transmission_texture: TextureSlot,
+    diffuse_transmission_color_texture: TextureSlot,
+    clearcoat_texture: TextureSlot,
+    clearcoat_roughness_texture: TextureSlot,
+    clearcoat_normal_texture: TextureSlot,
+    sheen_color_texture: TextureSlot,
+    sheen_roughness_texture: TextureSlot,
+    anisotropy_texture: TextureSlot,
+    iridescence_texture: TextureSlot,
+    iridescence_thickness_texture: TextureSlot,
 }
 
 struct Texture {
@@ -202,6 +253,8 @@ const MATERIAL_DOUBLE_SIDED: u32 = 1u;
 const MATERIAL_MASK: u32 = 2u;
 const MATERIAL_BLEND: u32 = 4u;
 const MATERIAL_UNLIT: u32 = 8u;
+const MATERIAL_SOLID: u32 = 16u;
+const MATERIAL_GLOSSINESS: u32 = 32u;
 
 const TEXTURE_WRAP_U_SHIFT: u32 = 0u;   // two bits: 0 clamp, 1 mirror, 2 repeat
 const TEXTURE_WRAP_V_SHIFT: u32 = 2u;

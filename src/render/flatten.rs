@@ -133,7 +133,8 @@ fn triangle_flags(mesh: &Mesh, material: &Material, format: &VertexFormat) -> u3
     if material.alpha_mode != AlphaMode::Opaque {
         flags |= TRIANGLE_ALPHA;
     }
-    if !material.double_sided {
+    // From inside of a solid its back faces are seen.
+    if !material.double_sided && !material.bounds_medium() {
         flags |= TRIANGLE_SINGLE_SIDED;
     }
     if mesh.normals.is_empty() {

@@ -31,6 +31,7 @@ pub fn base_frame(scene: &Scene, prepared: &Prepared, settings: &Settings) -> Fr
         environment_cos: rotation.cos() as f32,
         environment_sin: rotation.sin() as f32,
         punctual_count: prepared.punctual.len() as u32,
+        media: prepared.media,
         ..Default::default()
     }
 }

@@ -77,6 +77,10 @@ fn fixed_buffers(device: &Device, scene: &Prepared) -> Result<Vec<(u32, Buffer)>
         (6, device.buffer_with("lights", &scene.lights)?),
         (7, device.buffer_with("punctual lights", &scene.punctual)?),
         (8, device.buffer_with("sRGB table", &srgb_table())?),
+        (
+            10,
+            device.buffer_with("BSDF tables", &scene.bsdf_tables.values)?,
+        ),
     ])
 }
 

@@ -37,6 +37,10 @@ pub const MATERIAL_MASK: u32 = 2;
 pub const MATERIAL_BLEND: u32 = 4;
 /// [`Material::flags`]: constant colour.
 pub const MATERIAL_UNLIT: u32 = 8;
+/// [`Material::flags`]: its surfaces bound a medium.
+pub const MATERIAL_SOLID: u32 = 16;
+/// [`Material::flags`]: the alpha of the specular colour's texture multiplies the glossiness.
+pub const MATERIAL_GLOSSINESS: u32 = 32;
 
 /// [`Texture::flags`]: bilinear filter.
 pub const TEXTURE_LINEAR: u32 = 16;
@@ -127,6 +131,8 @@ shared_struct! {
         end_row: u32,
         /// Unused.
         pad0: u32,
+        /// The solids around the camera: indices of materials + 1, or 0.
+        media: [u32; 4],
     }
 }
 
@@ -229,8 +235,8 @@ shared_struct! {
         specular_color: [f32; 3],
         /// Perceptual roughness.
         roughness: f32,
-        /// ((ior − 1)/(ior + 1))².
-        ior_f0: f32,
+        /// Index of refraction, or 0: Schlick's term.
+        ior: f32,
         /// Strength of the dielectric specular lobe.
         specular: f32,
         /// Scale of the normal map.
@@ -239,12 +245,48 @@ shared_struct! {
         alpha_cutoff: f32,
         /// `MATERIAL_*` bits.
         flags: u32,
+        /// Of two media at a point, the one of the larger rank is there.
+        medium_rank: u32,
+        /// First number of the table of its Fresnel term in `bsdf_tables`.
+        albedo_table: u32,
+        /// First number of the table of what passes or is reflected.
+        glass_table: u32,
+        /// Colour of the light that passes diffusely.
+        diffuse_transmission_color: [f32; 3],
+        /// Fraction of the diffuse light that passes.
+        diffuse_transmission: f32,
+        /// Reflectance of the sheen.
+        sheen_color: [f32; 3],
+        /// Perceptual roughness of the sheen.
+        sheen_roughness: f32,
+        /// Absorption coefficient inside, 1/m.
+        absorption: [f32; 3],
+        /// Fraction that passes below the specular layer.
+        transmission: f32,
+        /// Coverage of the coat.
+        clearcoat: f32,
+        /// Its perceptual roughness.
+        clearcoat_roughness: f32,
+        /// Scale of its normal map.
+        clearcoat_normal_scale: f32,
+        /// 20 / Abbe number.
+        dispersion: f32,
+        /// Strength.
+        anisotropy: f32,
+        /// Cosine of its angle from the tangent.
+        anisotropy_cos: f32,
+        /// Sine.
+        anisotropy_sin: f32,
+        /// Coverage of the film.
+        iridescence: f32,
+        /// Index of the film.
+        iridescence_ior: f32,
+        /// Its thickness in nm where its texture is 0.
+        iridescence_thickness_min: f32,
+        /// And where it is 1.
+        iridescence_thickness_max: f32,
         /// Unused.
-        pad0: u32,
-        /// Unused.
-        pad1: u32,
-        /// Unused.
-        pad2: u32,
+        pad0: f32,
         /// RGB sRGB, A linear.
         base_color_texture: TextureSlot,
         /// G roughness, B metallic.
@@ -257,6 +299,28 @@ shared_struct! {
         specular_texture: TextureSlot,
         /// RGB sRGB.
         specular_color_texture: TextureSlot,
+        /// See `Material` of the scene.
+        transmission_texture: TextureSlot,
+        /// See `Material` of the scene.
+        diffuse_transmission_texture: TextureSlot,
+        /// See `Material` of the scene.
+        diffuse_transmission_color_texture: TextureSlot,
+        /// See `Material` of the scene.
+        clearcoat_texture: TextureSlot,
+        /// See `Material` of the scene.
+        clearcoat_roughness_texture: TextureSlot,
+        /// See `Material` of the scene.
+        clearcoat_normal_texture: TextureSlot,
+        /// See `Material` of the scene.
+        sheen_color_texture: TextureSlot,
+        /// See `Material` of the scene.
+        sheen_roughness_texture: TextureSlot,
+        /// See `Material` of the scene.
+        anisotropy_texture: TextureSlot,
+        /// See `Material` of the scene.
+        iridescence_texture: TextureSlot,
+        /// See `Material` of the scene.
+        iridescence_thickness_texture: TextureSlot,
     }
 }
 

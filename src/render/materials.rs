@@ -1,19 +1,35 @@
 //! Materials as the device holds them.
 
-use super::layout::{self, MATERIAL_BLEND, MATERIAL_DOUBLE_SIDED, MATERIAL_MASK, MATERIAL_UNLIT};
+use super::albedo::BsdfTables;
+use super::layout::{
+    self, MATERIAL_BLEND, MATERIAL_DOUBLE_SIDED, MATERIAL_GLOSSINESS, MATERIAL_MASK,
+    MATERIAL_SOLID, MATERIAL_UNLIT,
+};
+use super::media::medium_ranks;
 use super::textures::{Encoding, TextureSet};
 use crate::scene::{AlphaMode, Material, Scene};
 
 /// Every material of the scene, their textures added to `textures`.
-pub fn materials(scene: &Scene, textures: &mut TextureSet) -> Vec<layout::Material> {
+pub fn materials(
+    scene: &Scene,
+    tables: &BsdfTables,
+    textures: &mut TextureSet,
+) -> Vec<layout::Material> {
     let used = used_materials(scene);
+    let ranks = medium_ranks(scene);
     scene
         .materials
         .iter()
         .zip(used)
-        .map(|(m, used)| {
+        .zip(ranks)
+        .map(|((m, used), rank)| {
             if used {
-                material(scene, m, textures)
+                layout::Material {
+                    medium_rank: rank,
+                    albedo_table: tables.albedo(m.ior),
+                    glass_table: tables.glass(m.ior),
+                    ..material(scene, m, textures)
+                }
             } else {
                 layout::Material::default()
             }
@@ -39,7 +55,24 @@ fn material(scene: &Scene, m: &Material, textures: &mut TextureSet) -> layout::M
         metallic: m.metallic,
         specular_color: m.specular_color.to_array(),
         roughness: m.roughness,
-        ior_f0: ior_f0(m.ior),
+        ior: m.ior,
+        diffuse_transmission_color: m.diffuse_transmission_color.to_array(),
+        diffuse_transmission: m.diffuse_transmission,
+        sheen_color: m.sheen_color.to_array(),
+        sheen_roughness: m.sheen_roughness,
+        absorption: m.absorption.to_array(),
+        transmission: m.transmission,
+        clearcoat: m.clearcoat,
+        clearcoat_roughness: m.clearcoat_roughness,
+        clearcoat_normal_scale: m.clearcoat_normal_scale,
+        dispersion: m.dispersion,
+        anisotropy: m.anisotropy,
+        anisotropy_cos: m.anisotropy_rotation.cos(),
+        anisotropy_sin: m.anisotropy_rotation.sin(),
+        iridescence: m.iridescence,
+        iridescence_ior: m.iridescence_ior,
+        iridescence_thickness_min: m.iridescence_thickness[0],
+        iridescence_thickness_max: m.iridescence_thickness[1],
         specular: m.specular,
         normal_scale: m.normal_scale,
         alpha_cutoff: if let AlphaMode::Mask { cutoff } = m.alpha_mode {
@@ -54,14 +87,19 @@ fn material(scene: &Scene, m: &Material, textures: &mut TextureSet) -> layout::M
         emissive_texture: slot(&m.emissive_texture, Srgb),
         specular_texture: slot(&m.specular_texture, Linear),
         specular_color_texture: slot(&m.specular_color_texture, Srgb),
+        transmission_texture: slot(&m.transmission_texture, Linear),
+        diffuse_transmission_texture: slot(&m.diffuse_transmission_texture, Linear),
+        diffuse_transmission_color_texture: slot(&m.diffuse_transmission_color_texture, Srgb),
+        clearcoat_texture: slot(&m.clearcoat_texture, Linear),
+        clearcoat_roughness_texture: slot(&m.clearcoat_roughness_texture, Linear),
+        clearcoat_normal_texture: slot(&m.clearcoat_normal_texture, Linear),
+        sheen_color_texture: slot(&m.sheen_color_texture, Srgb),
+        sheen_roughness_texture: slot(&m.sheen_roughness_texture, Linear),
+        anisotropy_texture: slot(&m.anisotropy_texture, Linear),
+        iridescence_texture: slot(&m.iridescence_texture, Linear),
+        iridescence_thickness_texture: slot(&m.iridescence_thickness_texture, Linear),
         ..Default::default()
     }
-}
-
-/// Reflectance at normal incidence; an index of 0 stands for full reflection (KHR_materials_ior).
-fn ior_f0(ior: f32) -> f32 {
-    let n = f64::from(ior);
-    (((n - 1.0) / (n + 1.0)).powi(2)) as f32
 }
 
 fn flags(m: &Material) -> u32 {
@@ -75,6 +113,13 @@ fn flags(m: &Material) -> u32 {
     }
     if m.unlit {
         flags |= MATERIAL_UNLIT;
+    }
+    // An index of 0 refracts nothing.
+    if m.bounds_medium() && m.ior >= 1.0 {
+        flags |= MATERIAL_SOLID;
+    }
+    if m.glossiness_texture {
+        flags |= MATERIAL_GLOSSINESS;
     }
     flags
 }

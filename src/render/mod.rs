@@ -2,6 +2,7 @@
 //!
 //! [`Prepared`] -> [`GpuScene`] -> [`Renderer`] -> [`Film`].
 
+mod albedo;
 mod alias;
 mod attach;
 mod band;
@@ -17,15 +18,19 @@ pub mod layout;
 mod lights;
 mod list_wgsl;
 mod materials;
+mod media;
+mod microfacets;
 mod paged;
 mod prepared;
 pub mod program;
 mod renderer;
 mod settings;
 pub mod shader_check;
+mod spectrum;
 mod textures;
 mod vertex_format;
 
+pub use albedo::BsdfTables;
 pub use alias::{AliasEntry, alias_table};
 pub use environment::EnvironmentTable;
 pub use error::RenderError;

@@ -5,6 +5,7 @@ use std::time::Duration;
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
+use super::albedo::BsdfTables;
 use super::attach::attach;
 use super::emission::triangle_power;
 use super::environment::EnvironmentTable;
@@ -13,6 +14,7 @@ use super::flatten::FlatGeometry;
 use super::layout::{self, NONE};
 use super::lights::{LightList, punctual};
 use super::materials::materials;
+use super::media::media_around;
 use super::textures::TextureSet;
 use super::vertex_format::{VertexFormat, VertexNeeds};
 use crate::accel::{BuildOptions, Bvh, Placed};
@@ -43,6 +45,10 @@ pub struct Prepared {
     pub vertex_format: VertexFormat,
     /// Materials.
     pub materials: Vec<layout::Material>,
+    /// Albedos of lobes, and wavelengths.
+    pub bsdf_tables: BsdfTables,
+    /// The solids around the camera: indices of materials + 1, or 0.
+    pub media: [u32; 4],
     /// Textures.
     pub textures: TextureSet,
     /// The alias table over all lights.
@@ -80,7 +86,8 @@ impl Prepared {
         let (mut bvh, bvh_time) = timed_stage("bvh", build);
         flat.reorder(&bvh.order);
         let mut textures = TextureSet::default();
-        let materials = materials(scene, &mut textures);
+        let bsdf_tables = stage("albedos", || BsdfTables::new(scene, &features));
+        let materials = materials(scene, &bsdf_tables, &mut textures);
         let environment = environment_table(scene);
         let mut lights = LightList::default();
         let triangle_lights =
@@ -99,6 +106,8 @@ impl Prepared {
             vertex_words: flat.words,
             vertex_format,
             materials,
+            bsdf_tables,
+            media: media_around(scene, origin),
             textures,
             lights: lights.table(),
             punctual: near.iter().map(|l| punctual(l, origin)).collect(),

@@ -54,6 +54,22 @@ features! {
     specular_texture,
     /// A texture of the specular colour.
     specular_color_texture,
+    /// A texture of the transmission.
+    transmission_texture,
+    /// A texture of the diffuse transmission or its colour.
+    diffuse_transmission_texture,
+    /// A texture of the clear coat or its roughness.
+    clearcoat_texture,
+    /// A normal map of a clear coat on a mesh that has tangents.
+    clearcoat_normal_texture,
+    /// A texture of the sheen's colour or roughness.
+    sheen_texture,
+    /// A texture of the anisotropy on a mesh that has tangents.
+    anisotropy_texture,
+    /// A texture of the iridescence or the film's thickness.
+    iridescence_texture,
+    /// A texture whose alpha multiplies the glossiness.
+    glossiness_texture,
     /// A texture slot with a transform other than the identity.
     texture_transform,
     /// A sampler that clamps to the edge.
@@ -100,6 +116,24 @@ features! {
     specular,
     /// A lit surface that is at least partly metallic.
     metallic,
+    /// A lobe of specular transmission.
+    transmission,
+    /// A lobe of diffuse transmission.
+    diffuse_transmission,
+    /// A clear coat.
+    clearcoat,
+    /// A sheen.
+    sheen,
+    /// A specular lobe that is stretched along tangents.
+    anisotropy,
+    /// A specular layer under a thin film.
+    iridescence,
+    /// A transmitting surface that bounds a solid.
+    media,
+    /// A solid that absorbs light.
+    absorption,
+    /// A solid whose index of refraction depends on the wavelength.
+    dispersion,
     /// A dielectric specular lobe with an index of refraction other than 1.5.
     ior,
     /// A surface that emits.
@@ -155,11 +189,18 @@ impl Features {
 
     fn add_mesh(&mut self, mesh: &Mesh, material: &Material, label: &str) {
         let name = format!("mesh {:?}", mesh.name);
-        let tangents = !mesh.tangents.is_empty() && material.normal_texture.is_some();
+        let has_tangents = !mesh.tangents.is_empty();
+        let tangents = has_tangents && material.reads_tangents();
+        let normal_map = has_tangents && material.normal_texture.is_some();
+        let coat_map = has_tangents && material.clearcoat_normal_texture.is_some();
+        let stretched = has_tangents && material.anisotropy > 0.0;
         need!(self, normals if !mesh.normals.is_empty(), name);
         need!(self, flat_normals if mesh.normals.is_empty(), name);
         need!(self, tangents if tangents, name);
-        need!(self, normal_texture if tangents, label);
+        need!(self, normal_texture if normal_map, label);
+        need!(self, clearcoat_normal_texture if coat_map, label);
+        need!(self, anisotropy if stretched, label);
+        need!(self, anisotropy_texture if stretched && material.anisotropy_texture.is_some(), label);
         need!(self, uv0 if !mesh.tex_coords[0].is_empty(), name);
         need!(self, uv1 if !mesh.tex_coords[1].is_empty(), name);
         need!(self, colors if !mesh.colors.is_empty(), name);
@@ -188,7 +229,24 @@ impl Features {
         need!(self, metallic if metallic, label);
         need!(self, specular if metallic || glossy, label);
         need!(self, ior if glossy && material.ior != 1.5, label);
+        self.add_lobes(material, dielectric, metallic || glossy, label);
         need!(self, emissive if lit && material.emissive != Vec3::ZERO, label);
+    }
+
+    /// The lobes of extensions: a factor of 0 counts as absent.
+    fn add_lobes(&mut self, material: &Material, dielectric: bool, specular: bool, label: &str) {
+        let transmits = dielectric && material.transmission > 0.0;
+        let solid = dielectric && material.bounds_medium();
+        // What passes is refracted, also where nothing is reflected.
+        need!(self, specular if transmits, label);
+        need!(self, transmission if transmits, label);
+        need!(self, diffuse_transmission if dielectric && material.diffuse_transmission > 0.0, label);
+        need!(self, clearcoat if material.clearcoat > 0.0, label);
+        need!(self, sheen if material.sheen_color != Vec3::ZERO, label);
+        need!(self, iridescence if specular && material.iridescence > 0.0, label);
+        need!(self, media if solid, label);
+        need!(self, absorption if solid && material.absorption != Vec3::ZERO, label);
+        need!(self, dispersion if solid && material.dispersion > 0.0, label);
     }
 
     fn add_textures(&mut self, scene: &Scene, material: &Material, label: &str) {
@@ -197,6 +255,21 @@ impl Features {
         need!(self, emissive_texture if material.emissive_texture.is_some(), label);
         need!(self, specular_texture if material.specular_texture.is_some(), label);
         need!(self, specular_color_texture if material.specular_color_texture.is_some(), label);
+        let m = material;
+        let translucence = [
+            m.diffuse_transmission_texture,
+            m.diffuse_transmission_color_texture,
+        ];
+        let coat = [m.clearcoat_texture, m.clearcoat_roughness_texture];
+        let sheen = [m.sheen_color_texture, m.sheen_roughness_texture];
+        let film = [m.iridescence_texture, m.iridescence_thickness_texture];
+        let any = |slots: [Option<TextureSlot>; 2]| slots.iter().any(Option::is_some);
+        need!(self, transmission_texture if m.transmission_texture.is_some(), label);
+        need!(self, diffuse_transmission_texture if any(translucence), label);
+        need!(self, clearcoat_texture if any(coat), label);
+        need!(self, sheen_texture if any(sheen), label);
+        need!(self, iridescence_texture if any(film), label);
+        need!(self, glossiness_texture if m.glossiness_texture, label);
         for slot in material.texture_slots() {
             need!(self, texture_transform if !is_identity(slot), label);
             self.add_sampler(scene, &scene.textures[slot.texture], label);

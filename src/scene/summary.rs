@@ -2,9 +2,7 @@
 
 use serde::Serialize;
 
-use super::{
-    FeatureReason, Features, Filter, LightKind, Material, Projection, Scene, TextureSlot, Wrap,
-};
+use super::{FeatureReason, Features, Filter, LightKind, Material, Projection, Scene, Wrap};
 
 /// A scene in numbers and names.
 #[derive(Debug, Clone, Serialize)]
@@ -191,14 +189,7 @@ fn materials(scene: &Scene) -> Vec<MaterialSummary> {
 }
 
 fn texture_names(material: &Material) -> Vec<&'static str> {
-    let slots: [(&str, &Option<TextureSlot>); 6] = [
-        ("base_color", &material.base_color_texture),
-        ("metallic_roughness", &material.metallic_roughness_texture),
-        ("normal", &material.normal_texture),
-        ("emissive", &material.emissive_texture),
-        ("specular", &material.specular_texture),
-        ("specular_color", &material.specular_color_texture),
-    ];
+    let slots = material.named_slots();
     let filled = slots.into_iter().filter(|(_, slot)| slot.is_some());
     filled.map(|(name, _)| name).collect()
 }

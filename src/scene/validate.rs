@@ -93,14 +93,12 @@ impl Scene {
         self.check_tex_coords(mesh)
     }
 
-    /// The sets that the material reads are there, except for an unused normal map's.
+    /// The sets that the material reads are there, except for maps in tangent space without tangents.
     fn check_tex_coords(&self, mesh: &Mesh) -> Check {
         let material = &self.materials[mesh.material];
-        let unused = material.normal_texture.filter(|_| mesh.tangents.is_empty());
-        for slot in material
-            .texture_slots()
-            .filter(|&slot| Some(*slot) != unused)
-        {
+        let without_tangents = mesh.tangents.is_empty();
+        let unused = |slot| without_tangents && material.tangent_space_slots().any(|s| s == slot);
+        for slot in material.texture_slots().filter(|slot| !unused(*slot)) {
             ensure(!mesh.tex_coords[slot.tex_coord as usize].is_empty(), || {
                 format!("it has no texture coordinate set {}", slot.tex_coord)
             })?;
@@ -157,21 +155,27 @@ fn check_material(material: &Material, textures: usize) -> Check {
         let finite = u.is_finite() && v.is_finite() && slot.offset.is_finite();
         ensure(finite, || "a texture transform is not finite".into())?;
     }
-    let mut fractions = material.base_color.to_array().into_iter();
-    ensure(
-        fractions.all(is_fraction)
-            && [material.metallic, material.roughness, material.specular]
-                .into_iter()
-                .all(is_fraction),
-        || "a factor is outside [0, 1]".into(),
-    )?;
-    let quantities = [material.emissive, material.specular_color];
-    let mut quantities = quantities.iter().flat_map(|v| v.to_array());
-    ensure(quantities.all(is_quantity), || {
+    ensure(fractions(material).all(is_fraction), || {
+        "a factor is outside [0, 1]".into()
+    })?;
+    ensure(quantities(material).all(is_quantity), || {
         "a factor is negative or not finite".into()
     })?;
-    ensure(material.normal_scale.is_finite(), || {
-        "its normal scale is not finite".into()
+    let absorption = material.absorption.to_array();
+    ensure(absorption.into_iter().all(is_quantity), || {
+        "its absorption is negative or not finite".into()
+    })?;
+    let others = [
+        material.normal_scale,
+        material.clearcoat_normal_scale,
+        material.anisotropy_rotation,
+    ];
+    ensure(others.into_iter().all(f32::is_finite), || {
+        "the scale of a normal map or the angle of its anisotropy is not finite".into()
+    })?;
+    let film = material.iridescence_ior;
+    ensure(film >= 1.0 && film.is_finite(), || {
+        format!("the index of refraction of its film is {film}")
     })?;
     let ior = material.ior;
     ensure(ior == 0.0 || (ior >= 1.0 && ior.is_finite()), || {
@@ -183,6 +187,34 @@ fn check_material(material: &Material, textures: usize) -> Check {
         }),
         _ => Ok(()),
     }
+}
+
+/// What lies in [0, 1].
+fn fractions(material: &Material) -> impl Iterator<Item = f32> {
+    let scalars = [
+        material.metallic,
+        material.roughness,
+        material.specular,
+        material.transmission,
+        material.diffuse_transmission,
+        material.clearcoat,
+        material.clearcoat_roughness,
+        material.sheen_roughness,
+        material.anisotropy,
+        material.iridescence,
+    ];
+    let colors = [material.diffuse_transmission_color, material.sheen_color];
+    let colors = colors.into_iter().flat_map(|v| v.to_array());
+    let base_color = material.base_color.to_array();
+    scalars.into_iter().chain(colors).chain(base_color)
+}
+
+/// What is finite and not negative.
+fn quantities(material: &Material) -> impl Iterator<Item = f32> {
+    let colors = [material.emissive, material.specular_color];
+    let colors = colors.into_iter().flat_map(|v| v.to_array());
+    let film = material.iridescence_thickness;
+    colors.chain(film).chain([material.dispersion])
 }
 
 fn check_camera(camera: &Camera) -> Check {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::accessor::{Component, Shape};
 use super::elements::PARALLEL;
 use super::error::LoadError;
-use super::material::NORMAL;
+use super::material::IN_TANGENT_SPACE;
 use super::primitive::{Primitive, Window};
 use super::tangents::{any_tangent, flat_normal};
 use crate::scene::Mesh;
@@ -108,7 +108,7 @@ fn given_tangents(
     mesh: &mut Mesh,
     window: Window,
 ) -> Result<(), LoadError> {
-    let wanted = primitive.normal_map && !mesh.normals.is_empty();
+    let wanted = primitive.needs_tangents && !mesh.normals.is_empty();
     let Some(accessor) = primitive.attribute("TANGENT")?.filter(|_| wanted) else {
         return Ok(());
     };
@@ -144,19 +144,23 @@ fn tex_coords(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Res
             |slot: usize| material.slots[slot].is_some_and(|info| info.tex_coord as usize == set);
         let readers = (0..material.slots.len()).filter(|&slot| reads(slot));
         let readers: Vec<usize> = readers.collect();
-        if readers.is_empty() {
+        let makes_tangents =
+            material.tangent_set() == Some(set as u32) && primitive.attribute("TANGENT")?.is_none();
+        if readers.is_empty() && !makes_tangents {
             continue;
         }
         let name = format!("TEXCOORD_{}", material.tex_coords[set]);
         let Some(accessor) = primitive.attribute(&name)? else {
-            if readers.contains(&NORMAL) {
-                primitive.normal_map = false;
+            let in_tangent_space =
+                |slot: &usize| IN_TANGENT_SPACE.iter().any(|s| *s as usize == *slot);
+            if makes_tangents || readers.iter().any(in_tangent_space) {
+                primitive.needs_tangents = false;
                 primitive.warn(&format!(
-                    "it has no {name}; the normal map of {} is not used",
+                    "it has no {name}; normal maps and anisotropy of {} are not used",
                     material.label
                 ));
             }
-            if readers != [NORMAL] {
+            if !readers.iter().all(in_tangent_space) {
                 primitive.warn(&format!(
                     "it has no {name}; the textures of {} show a single texel",
                     material.label

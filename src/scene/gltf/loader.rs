@@ -15,7 +15,7 @@ use super::primitive::Source;
 use super::texture::{self, Textures};
 use super::{LoadOptions, accessor, camera, extensions, framing, light, meshes, pose};
 use crate::host::stages::stage;
-use crate::scene::{Material, Scene, TextureSlot};
+use crate::scene::{Scene, TextureSlot};
 
 /// Load the chosen scene of a parsed file.
 pub(super) fn load(
@@ -174,24 +174,15 @@ fn fill_materials(
         if index == default && !is_used {
             break;
         }
-        let slots = raw.slots.map(|slot| {
-            let slot = slot.filter(|_| is_used)?;
+        scene.materials.push(raw.filled(|slot| {
+            let texture = textures.index.get(&slot.texture).filter(|_| is_used)?;
             Some(TextureSlot {
-                texture: *textures.index.get(&slot.texture)?,
+                texture: *texture,
                 tex_coord: slot.tex_coord,
                 matrix: slot.matrix,
                 offset: slot.offset,
             })
-        });
-        scene.materials.push(Material {
-            base_color_texture: slots[material::BASE_COLOR],
-            metallic_roughness_texture: slots[material::METALLIC_ROUGHNESS],
-            normal_texture: slots[material::NORMAL],
-            emissive_texture: slots[material::EMISSIVE],
-            specular_texture: slots[material::SPECULAR],
-            specular_color_texture: slots[material::SPECULAR_COLOR],
-            ..raw.material
-        });
+        }));
     }
 }
 

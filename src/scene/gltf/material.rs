@@ -4,8 +4,9 @@ use glam::{Vec3, Vec4};
 
 use super::error::LoadError;
 use super::json::Item;
+use super::material_extensions::drop_unread;
 use super::texture_info::{self, RawSlot};
-use crate::scene::{AlphaMode, Material};
+use crate::scene::{AlphaMode, Material, TextureSlot};
 
 /// A material whose texture slots still refer to the file's textures.
 #[derive(Debug, Clone, Default)]
@@ -14,26 +15,87 @@ pub(super) struct RawMaterial {
     pub label: String,
     /// Everything but its texture slots, which are empty.
     pub material: Material,
-    /// The slots, in the order of [`SLOTS`].
+    /// The slots, in the order of [`Slot`].
     pub slots: [Option<RawSlot>; SLOTS],
     /// The file's texture coordinate set behind sets 0 and 1 of the scene.
     pub tex_coords: [u32; 2],
 }
 
+/// Which texture slot of a [`Material`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Slot {
+    BaseColor,
+    MetallicRoughness,
+    Normal,
+    Emissive,
+    Specular,
+    SpecularColor,
+    Transmission,
+    DiffuseTransmission,
+    DiffuseTransmissionColor,
+    Clearcoat,
+    ClearcoatRoughness,
+    ClearcoatNormal,
+    SheenColor,
+    SheenRoughness,
+    Anisotropy,
+    Iridescence,
+    IridescenceThickness,
+}
+
 /// Number of texture slots of a [`Material`].
-pub(super) const SLOTS: usize = 6;
-/// Position of the base colour in [`RawMaterial::slots`].
-pub(super) const BASE_COLOR: usize = 0;
-/// Position of metallic and roughness.
-pub(super) const METALLIC_ROUGHNESS: usize = 1;
-/// Position of the normal map.
-pub(super) const NORMAL: usize = 2;
-/// Position of the emission.
-pub(super) const EMISSIVE: usize = 3;
-/// Position of the specular strength.
-pub(super) const SPECULAR: usize = 4;
-/// Position of the specular colour.
-pub(super) const SPECULAR_COLOR: usize = 5;
+pub(super) const SLOTS: usize = 17;
+
+/// The slots that are looked up in tangent space.
+pub(super) const IN_TANGENT_SPACE: [Slot; 3] =
+    [Slot::Normal, Slot::ClearcoatNormal, Slot::Anisotropy];
+
+impl RawMaterial {
+    /// What a slot of the file reads.
+    pub fn slot(&self, slot: Slot) -> Option<RawSlot> {
+        self.slots[slot as usize]
+    }
+
+    pub(super) fn set(&mut self, slot: Slot, value: Option<RawSlot>) {
+        self.slots[slot as usize] = value;
+    }
+
+    /// The scene's texture coordinate set along which tangents run, if the material needs any.
+    pub fn tangent_set(&self) -> Option<u32> {
+        let mut slots = IN_TANGENT_SPACE
+            .into_iter()
+            .filter_map(|slot| self.slot(slot));
+        let anisotropic = self.material.anisotropy > 0.0;
+        let first_set = u32::from(self.tex_coords[0] != 0);
+        let set = slots.next().map(|slot| slot.tex_coord);
+        set.or(anisotropic.then_some(first_set))
+    }
+
+    /// The material with its slots filled by `texture`.
+    pub fn filled(self, texture: impl Fn(RawSlot) -> Option<TextureSlot>) -> Material {
+        let at = |slot: Slot| self.slot(slot).and_then(&texture);
+        Material {
+            base_color_texture: at(Slot::BaseColor),
+            metallic_roughness_texture: at(Slot::MetallicRoughness),
+            normal_texture: at(Slot::Normal),
+            emissive_texture: at(Slot::Emissive),
+            specular_texture: at(Slot::Specular),
+            specular_color_texture: at(Slot::SpecularColor),
+            transmission_texture: at(Slot::Transmission),
+            diffuse_transmission_texture: at(Slot::DiffuseTransmission),
+            diffuse_transmission_color_texture: at(Slot::DiffuseTransmissionColor),
+            clearcoat_texture: at(Slot::Clearcoat),
+            clearcoat_roughness_texture: at(Slot::ClearcoatRoughness),
+            clearcoat_normal_texture: at(Slot::ClearcoatNormal),
+            sheen_color_texture: at(Slot::SheenColor),
+            sheen_roughness_texture: at(Slot::SheenRoughness),
+            anisotropy_texture: at(Slot::Anisotropy),
+            iridescence_texture: at(Slot::Iridescence),
+            iridescence_thickness_texture: at(Slot::IridescenceThickness),
+            ..self.material
+        }
+    }
+}
 
 /// Read all materials of the file.
 pub(super) fn read_all(
@@ -56,8 +118,8 @@ pub(super) fn read_all(
 }
 
 /// Reads one material.
-struct Reader<'a, 'b> {
-    item: &'a Item<'b>,
+pub(super) struct Reader<'a, 'b> {
+    pub item: &'a Item<'b>,
     textures: usize,
     warnings: &'a mut Vec<String>,
 }
@@ -77,6 +139,7 @@ impl Reader<'_, '_> {
         self.normal(&mut raw)?;
         self.emission(&mut raw)?;
         self.specular(&mut raw)?;
+        self.extensions(&mut raw)?;
         drop_unread(&mut raw);
         texture_info::choose_sets(self.item, &mut raw)?;
         Ok(raw)
@@ -114,13 +177,16 @@ impl Reader<'_, '_> {
         if let Some(roughness) = item.float("roughnessFactor")? {
             raw.material.roughness = self.clamp(&item, "roughnessFactor", roughness, 0.0, 1.0);
         }
-        raw.slots[BASE_COLOR] = self.slot(&item, "baseColorTexture")?;
-        raw.slots[METALLIC_ROUGHNESS] = self.slot(&item, "metallicRoughnessTexture")?;
+        raw.set(Slot::BaseColor, self.slot(&item, "baseColorTexture")?);
+        raw.set(
+            Slot::MetallicRoughness,
+            self.slot(&item, "metallicRoughnessTexture")?,
+        );
         Ok(())
     }
 
     fn normal(&mut self, raw: &mut RawMaterial) -> Result<(), LoadError> {
-        raw.slots[NORMAL] = self.slot(self.item, "normalTexture")?;
+        raw.set(Slot::Normal, self.slot(self.item, "normalTexture")?);
         if let Some(item) = self.item.object("normalTexture", "normalTexture")? {
             raw.material.normal_scale = item.float("scale")?.unwrap_or(1.0);
         }
@@ -142,7 +208,7 @@ impl Reader<'_, '_> {
             strength = self.clamp(&item, "emissiveStrength", given, 0.0, f32::MAX);
         }
         raw.material.emissive = Vec3::from_array(factor) * strength;
-        raw.slots[EMISSIVE] = self.slot(self.item, "emissiveTexture")?;
+        raw.set(Slot::Emissive, self.slot(self.item, "emissiveTexture")?);
         match raw.material.emissive.is_finite() {
             true => Ok(()),
             false => Err(self
@@ -169,17 +235,20 @@ impl Reader<'_, '_> {
             let color = color.map(|x| self.clamp(&item, "specularColorFactor", x, 0.0, f32::MAX));
             raw.material.specular_color = Vec3::from_array(color);
         }
-        raw.slots[SPECULAR] = self.slot(&item, "specularTexture")?;
-        raw.slots[SPECULAR_COLOR] = self.slot(&item, "specularColorTexture")?;
+        raw.set(Slot::Specular, self.slot(&item, "specularTexture")?);
+        raw.set(
+            Slot::SpecularColor,
+            self.slot(&item, "specularColorTexture")?,
+        );
         Ok(())
     }
 
-    fn slot(&mut self, item: &Item, key: &str) -> Result<Option<RawSlot>, LoadError> {
+    pub fn slot(&mut self, item: &Item, key: &str) -> Result<Option<RawSlot>, LoadError> {
         texture_info::read(item, key, self.textures)
     }
 
     /// Force a factor into its range; other tools accept such files, so this is a warning.
-    fn clamp(&mut self, item: &Item, key: &str, value: f32, low: f32, high: f32) -> f32 {
+    pub fn clamp(&mut self, item: &Item, key: &str, value: f32, low: f32, high: f32) -> f32 {
         let clamped = value.clamp(low, high);
         if clamped != value {
             self.warnings.push(format!(
@@ -188,26 +257,5 @@ impl Reader<'_, '_> {
             ));
         }
         clamped
-    }
-}
-
-/// Forget what a zero factor or the lack of lighting keeps from being seen.
-fn drop_unread(raw: &mut RawMaterial) {
-    if raw.material.unlit {
-        raw.material.emissive = Vec3::ZERO;
-    }
-    let material = &raw.material;
-    let unread = [
-        false,
-        material.unlit,
-        material.unlit,
-        material.emissive == Vec3::ZERO,
-        material.unlit || material.specular == 0.0,
-        material.unlit || material.specular == 0.0 || material.specular_color == Vec3::ZERO,
-    ];
-    for (slot, unread) in raw.slots.iter_mut().zip(unread) {
-        if unread {
-            *slot = None;
-        }
     }
 }

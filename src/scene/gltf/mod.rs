@@ -18,6 +18,7 @@ mod json;
 mod light;
 mod loader;
 mod material;
+mod material_extensions;
 mod meshes;
 mod node;
 mod pose;

@@ -11,7 +11,7 @@ use super::buffer::Data;
 use super::elements::PARALLEL;
 use super::error::LoadError;
 use super::json::{Item, counted};
-use super::material::{NORMAL, RawMaterial};
+use super::material::RawMaterial;
 use super::tangents;
 use super::topology::Topology;
 use super::vertices;
@@ -39,8 +39,8 @@ pub(super) struct Primitive<'a> {
     pub source: Source<'a>,
     pub material: usize,
     pub warnings: Vec<String>,
-    /// Whether the material has a normal map and the vertices have coordinates for it.
-    pub normal_map: bool,
+    /// Whether the material is looked up in tangent space and the vertices have coordinates for that.
+    pub needs_tangents: bool,
     attributes: Option<Item<'a>>,
 }
 
@@ -53,7 +53,7 @@ pub(super) fn load(item: &Item, name: &str, source: Source) -> Result<Loaded, Lo
         source,
         material: material.unwrap_or(file_materials),
         warnings: Vec::new(),
-        normal_map: false,
+        needs_tangents: false,
         attributes: item.object("attributes", "attributes")?,
     };
     let mut mesh = primitive.read()?;
@@ -90,10 +90,10 @@ impl<'a> Primitive<'a> {
             indices,
             ..Mesh::default()
         };
-        self.normal_map = self.raw_material().slots[NORMAL].is_some();
+        self.needs_tangents = self.raw_material().tangent_set().is_some();
         attributes::read(self, &mut mesh, window)?;
         vertices::drop_unused(&mut mesh);
-        if self.normal_map && mesh.tangents.is_empty() {
+        if self.needs_tangents && mesh.tangents.is_empty() {
             self.make_tangents(&mut mesh)?;
         }
         Ok(Some(mesh))
@@ -239,19 +239,21 @@ impl<'a> Primitive<'a> {
         )))
     }
 
-    /// Make tangents along the normal map's texture coordinates.
+    /// Make tangents along the texture coordinates of what is looked up in tangent space.
     fn make_tangents(&mut self, mesh: &mut Mesh) -> Result<(), LoadError> {
-        let slot = self.raw_material().slots[NORMAL];
-        let Some(set) = slot.map(|slot| slot.tex_coord as usize) else {
+        let Some(set) = self.raw_material().tangent_set() else {
             return Ok(());
         };
+        if mesh.tex_coords[set as usize].is_empty() {
+            return Ok(());
+        }
         let bytes = mesh.indices.len() as u64 * 3 * 64;
         if !self.source.data.charge(bytes) {
             return Err(self
                 .item
                 .fault("there are too many triangles to make tangents for"));
         }
-        tangents::generate(mesh, set);
+        tangents::generate(mesh, set as usize);
         Ok(())
     }
 }
