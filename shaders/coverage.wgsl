@@ -11,7 +11,7 @@ fn coverage(triangle: Triangle, b: vec3f) -> f32 {
         return 1.0;
     }
     var alpha = materials[triangle.material].base_color.a;
-    if (HAS_COLORS) {
+    if (HAS_COLORS && (triangle.flags & TRIANGLE_COLORS) != 0u) {
         alpha *= interpolate_vec4(vertex_words(triangle.index) + COLOR_OFFSET, b).a;
     }
     let slot = materials[triangle.material].base_color_texture;

@@ -93,9 +93,9 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
     if (VERTEX_STRIDE > 0u) {
         let first = vertex_words(triangle.index);
         if (HAS_NORMALS && (triangle.flags & TRIANGLE_FLAT) == 0u) {
-            normal = interpolate_vec3(first + NORMAL_OFFSET, b);
+            normal = normalize_or(interpolate_vec3(first + NORMAL_OFFSET, b), geometric);
         }
-        if (HAS_COLORS) {
+        if (HAS_COLORS && (triangle.flags & TRIANGLE_COLORS) != 0u) {
             (*s).color = interpolate_vec4(first + COLOR_OFFSET, b);
         }
         if (HAS_TANGENTS && (triangle.flags & TRIANGLE_TANGENTS) != 0u) {
@@ -105,12 +105,11 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
     let uv = texture_coordinates(triangle.index, b);
     (*s).uv0 = uv.xy;
     (*s).uv1 = uv.zw;
-    normal = normalize_or(normal, geometric);
     let smooth_normal = normal;
     if (HAS_NORMAL_TEXTURE) {
         let slot = materials[(*s).material].normal_texture;
         let scale = materials[(*s).material].normal_scale;
-        normal = normalize_or(perturb_normal(*s, slot, scale, normal, tangent), normal);
+        normal = perturb_normal(*s, slot, scale, normal, tangent);
     }
     let side = select(1.0, -1.0, (*s).back_face);
     (*s).normal *= side;
@@ -120,7 +119,7 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
         if (HAS_CLEARCOAT_NORMAL_TEXTURE) {
             let slot = materials[(*s).material].clearcoat_normal_texture;
             let scale = materials[(*s).material].clearcoat_normal_scale;
-            coat = normalize_or(perturb_normal(*s, slot, scale, coat, tangent), coat);
+            coat = perturb_normal(*s, slot, scale, coat, tangent);
         }
         (*s).clearcoat_normal = oriented(*s, coat, side);
     }
@@ -184,7 +183,7 @@ fn perturb_normal(s: Surface, slot: TextureSlot, scale: f32, normal: vec3f, tang
     let map = (sample_texture(slot, s.uv0, s.uv1).xyz * 2.0 - 1.0) * vec3f(scale, scale, 1.0);
     // The interpolated tangent is used as it is, as mikktspace prescribes.
     let bitangent = cross(normal, tangent.xyz) * sign(tangent.w);
-    return map.x * tangent.xyz + map.y * bitangent + map.z * normal;
+    return normalize_or(map.x * tangent.xyz + map.y * bitangent + map.z * normal, normal);
 }
 
 fn normalize_or(v: vec3f, fallback: vec3f) -> vec3f {

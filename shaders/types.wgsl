@@ -248,6 +248,7 @@ const TRIANGLE_SINGLE_SIDED: u32 = 0x02000000u;  // camera rays pass its back fa
 const TRIANGLE_FLAT: u32 = 0x04000000u;          // its mesh has no shading normals
 const TRIANGLE_TANGENTS: u32 = 0x08000000u;      // its mesh has tangents
 const TRIANGLE_EMITS: u32 = 0x10000000u;         // it is in the table of lights
+const TRIANGLE_COLORS: u32 = 0x20000000u;        // its mesh has colours
 
 const MATERIAL_DOUBLE_SIDED: u32 = 1u;
 const MATERIAL_MASK: u32 = 2u;

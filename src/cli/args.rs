@@ -108,6 +108,11 @@ pub struct RenderArgs {
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = parse::assignment)]
     pub set: Vec<(String, f64)>,
 
+    /// Compile features in that the scene does not use, for comparison: `all`, or names that
+    /// `etendue info` shows, separated by commas
+    #[arg(long, value_name = "all|LIST", value_delimiter = ',', value_parser = parse::feature)]
+    pub require: Vec<String>,
+
     /// Print the WGSL that is compiled, and render nothing
     #[arg(long)]
     pub print_wgsl: bool,

@@ -4,7 +4,7 @@
 //! terminal.
 
 use super::bvh_report::BvhReport;
-use crate::scene::Summary;
+use crate::scene::{FeatureReason, Summary};
 
 /// Rows of cells, to be aligned.
 type Rows = Vec<Vec<String>>;
@@ -135,7 +135,11 @@ fn extensions(s: &Summary) -> Rows {
 
 fn features(s: &Summary) -> Rows {
     let each = s.features.iter();
-    each.map(|f| vec![f.feature.into(), printable(&f.reason)])
+    let bytes = |f: &FeatureReason| match f.bytes {
+        0 => "-".into(),
+        bytes => format!("{bytes} B"),
+    };
+    each.map(|f| vec![f.feature.into(), printable(&f.reason), bytes(f)])
         .collect()
 }
 

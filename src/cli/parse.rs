@@ -1,5 +1,7 @@
 //! Values of arguments.
 
+use crate::scene::Features;
+
 /// `1280x720`.
 ///
 /// # Errors
@@ -11,6 +13,21 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
     });
     sides.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, as in 1280x720".into())
 }
+
+/// The name of a feature, or `all`.
+///
+/// # Errors
+/// Anything else.
+pub fn feature(text: &str) -> Result<String, String> {
+    let known = Features::names();
+    match text == ALL || known.contains(&text) {
+        true => Ok(text.into()),
+        false => Err(format!("expected {ALL}, or some of {}", known.join(", "))),
+    }
+}
+
+/// Stands for every feature.
+pub const ALL: &str = "all";
 
 /// `NAME=VALUE`; `true` and `false` are 1 and 0.
 ///

@@ -14,7 +14,7 @@ use super::message::{self, Warnings};
 use super::metadata::metadata;
 use super::outputs::Outputs;
 use super::report::{Report, Seconds, timed};
-use super::{environment, settings, shaders};
+use super::{environment, parse, settings, shaders};
 use crate::accel::BuildOptions;
 use crate::gpu::Device;
 use crate::host::Cache;
@@ -164,9 +164,17 @@ fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
     if environment.is_some() {
         scene.environment = environment;
     }
+    scene.required_features = required_features(args);
     let valid = stage("validate", || scene.validate());
     valid.with_context(|| args.file.display().to_string())?;
     Ok(scene)
+}
+
+fn required_features(args: &RenderArgs) -> Vec<String> {
+    match args.require.iter().any(|name| name == parse::ALL) {
+        true => Features::names().into_iter().map(String::from).collect(),
+        false => args.require.clone(),
+    }
 }
 
 fn open_device(args: &RenderArgs) -> Result<Device> {
@@ -195,8 +203,17 @@ fn warn_of_scene(scene: &Scene, prepared: &Prepared, args: &RenderArgs, warnings
 }
 
 fn has_light(f: &Features) -> bool {
-    let punctual = f.point_light || f.spot_light || f.directional_light;
-    punctual || f.emissive || f.environment || f.unlit
+    let there = |(name, on): (&str, bool)| on && !f.is_asked_for(name);
+    const LIGHTS: [&str; 6] = [
+        "point_light",
+        "spot_light",
+        "directional_light",
+        "emissive",
+        "environment",
+        "unlit",
+    ];
+    let mut flags = f.flags().into_iter();
+    flags.any(|flag| LIGHTS.contains(&flag.0) && there(flag))
 }
 
 /// The layers of the file: the picture, the AOVs, the variance.

@@ -9,7 +9,8 @@ use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::layout::{
-    MATERIAL_INDEX_MASK, TRIANGLE_ALPHA, TRIANGLE_FLAT, TRIANGLE_SINGLE_SIDED, TRIANGLE_TANGENTS,
+    MATERIAL_INDEX_MASK, TRIANGLE_ALPHA, TRIANGLE_COLORS, TRIANGLE_FLAT, TRIANGLE_SINGLE_SIDED,
+    TRIANGLE_TANGENTS,
 };
 use super::vertex_format::VertexFormat;
 use crate::accel::Placed;
@@ -139,6 +140,9 @@ fn triangle_flags(mesh: &Mesh, material: &Material, format: &VertexFormat) -> u3
     }
     if mesh.normals.is_empty() {
         flags |= TRIANGLE_FLAT;
+    }
+    if format.colors.is_some() && !mesh.colors.is_empty() {
+        flags |= TRIANGLE_COLORS;
     }
     if format.tangents.is_some() && !mesh.tangents.is_empty() {
         flags |= TRIANGLE_TANGENTS;

@@ -1,6 +1,6 @@
 //! What the shader is told about the camera, the lights and the settings.
 
-use super::layout::Frame;
+use super::layout::{Frame, NONE};
 use super::prepared::Prepared;
 use super::settings::Settings;
 use crate::scene::{Projection, Scene};
@@ -24,9 +24,13 @@ pub fn base_frame(scene: &Scene, prepared: &Prepared, settings: &Settings) -> Fr
         max_depth: settings.max_depth,
         seed: settings.seed,
         light_count: prepared.lights.len() as u32,
-        environment_light: prepared.environment_light,
-        environment_width: image.map_or(0, |i| i.width as u32),
-        environment_height: image.map_or(0, |i| i.height as u32),
+        // Only a kernel with an environment that the scene has not reads it where there is none.
+        environment_light: match prepared.environment_light {
+            NONE => 0,
+            light => light,
+        },
+        environment_width: image.map_or(1, |i| i.width as u32),
+        environment_height: image.map_or(1, |i| i.height as u32),
         environment_radiance: environment.map_or([0.0; 3], |e| e.radiance),
         environment_cos: rotation.cos() as f32,
         environment_sin: rotation.sin() as f32,

@@ -1,6 +1,7 @@
 //! A prepared scene on a device.
 
 use super::error::RenderError;
+use super::layout::Light;
 use super::paged::{FIRST_PAGED_BINDING, PagedBuffer};
 use super::prepared::Prepared;
 use super::textures::srgb_table;
@@ -71,10 +72,15 @@ impl GpuScene {
 }
 
 fn fixed_buffers(device: &Device, scene: &Prepared) -> Result<Vec<(u32, Buffer)>, GpuError> {
+    // A kernel with lights that the scene has not may look at the first.
+    let lights = match scene.lights.is_empty() {
+        true => device.buffer_with("lights", &[Light::default()])?,
+        false => device.buffer_with("lights", &scene.lights)?,
+    };
     Ok(vec![
         (4, device.buffer_with("materials", &scene.materials)?),
         (5, device.buffer_with("textures", &scene.textures.textures)?),
-        (6, device.buffer_with("lights", &scene.lights)?),
+        (6, lights),
         (7, device.buffer_with("punctual lights", &scene.punctual)?),
         (8, device.buffer_with("sRGB table", &srgb_table())?),
         (

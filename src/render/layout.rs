@@ -21,6 +21,8 @@ pub const TRIANGLE_SINGLE_SIDED: u32 = 1 << 25;
 pub const TRIANGLE_FLAT: u32 = 1 << 26;
 /// Its mesh has tangents.
 pub const TRIANGLE_TANGENTS: u32 = 1 << 27;
+/// Its mesh has colours.
+pub const TRIANGLE_COLORS: u32 = 1 << 29;
 /// It is in the table of lights.
 pub const TRIANGLE_EMITS: u32 = 1 << 28;
 

@@ -19,7 +19,7 @@ use super::textures::TextureSet;
 use super::vertex_format::{VertexFormat, VertexNeeds};
 use crate::accel::{BuildOptions, Bvh, Placed};
 use crate::host::stages::{stage, timed_stage};
-use crate::scene::{Features, LightKind, Material, PunctualLight, Scene};
+use crate::scene::{EnvironmentImage, Features, LightKind, Material, PunctualLight, Scene};
 
 /// Most triangles that the BVH can count.
 const MAX_TRIANGLES: u64 = crate::accel::MAX_TRIANGLES as u64;
@@ -88,7 +88,7 @@ impl Prepared {
         let mut textures = TextureSet::default();
         let bsdf_tables = stage("albedos", || BsdfTables::new(scene, &features));
         let materials = materials(scene, &bsdf_tables, &mut textures);
-        let environment = environment_table(scene);
+        let environment = environment_table(scene, &features);
         let mut lights = LightList::default();
         let triangle_lights =
             add_triangle_lights(&mut lights, scene, &flat, &vertex_format, &bvh.order);
@@ -179,13 +179,20 @@ fn check_counts(scene: &Scene) -> Result<(), RenderError> {
     check("texels", texels, u64::from(u32::MAX) / 4)
 }
 
-fn environment_table(scene: &Scene) -> EnvironmentTable {
-    scene
-        .environment
-        .as_ref()
-        .and_then(|e| e.image.as_ref())
-        .map(|image| EnvironmentTable::new(image))
-        .unwrap_or_default()
+fn environment_table(scene: &Scene, features: &Features) -> EnvironmentTable {
+    let image = scene.environment.as_ref().and_then(|e| e.image.as_ref());
+    match image {
+        Some(image) => EnvironmentTable::new(image),
+        // Something to look up for a kernel that was asked to.
+        None if features.is_asked_for("environment_image") => {
+            EnvironmentTable::new(&EnvironmentImage {
+                width: 1,
+                height: 1,
+                texels: vec![[1.0; 3]],
+            })
+        }
+        None => EnvironmentTable::default(),
+    }
 }
 
 /// Enters every emissive triangle; gives each triangle's index in the table, or [`NONE`].

@@ -144,25 +144,33 @@ pub fn constants(
 ) -> Vec<(&'static str, Constant)> {
     let format = &scene.vertex_format;
     let offset = |o: Option<u32>| Constant::U32(o.unwrap_or(0));
+    let asked = |names: &[&str]| names.iter().any(|name| scene.features.is_asked_for(name));
+    let punctual = ["point_light", "spot_light", "directional_light"];
+    let lights = asked(&["emissive", "environment"]) || asked(&punctual);
     let mut list = feature_constants(&scene.features);
     list.extend(stack_constants(scene.bvh.depth, workgroup_bytes));
     list.extend([
         (
             "HAS_LIGHT_TRIANGLES",
-            Constant::Bool(scene.has_light_triangles),
+            Constant::Bool(scene.has_light_triangles || asked(&["emissive"])),
         ),
         (
             "HAS_PUNCTUAL_LIGHTS",
-            Constant::Bool(scene.lights.iter().any(super::lights::is_punctual)),
+            Constant::Bool(scene.lights.iter().any(super::lights::is_punctual) || asked(&punctual)),
         ),
-        ("HAS_SEVERAL_LIGHTS", Constant::Bool(scene.lights.len() > 1)),
+        (
+            "HAS_SEVERAL_LIGHTS",
+            Constant::Bool(scene.lights.len() > 1 || lights),
+        ),
         (
             "HAS_ENVIRONMENT",
-            Constant::Bool(scene.environment_light != super::layout::NONE),
+            Constant::Bool(
+                scene.environment_light != super::layout::NONE || asked(&["environment"]),
+            ),
         ),
         (
             "HAS_ENVIRONMENT_IMAGE",
-            Constant::Bool(!scene.environment.is_black()),
+            Constant::Bool(!scene.environment.is_black() || asked(&["environment_image"])),
         ),
         ("SPECTRUM_TABLE", Constant::U32(scene.bsdf_tables.spectrum)),
         ("VERTEX_STRIDE", Constant::U32(format.stride)),

@@ -3,6 +3,7 @@
 use glam::{Mat2, Vec2, Vec3};
 use serde::Serialize;
 
+use super::feature_bytes;
 use super::{
     AlphaMode, Filter, LightKind, Material, Mesh, Scene, Texels, Texture, TextureSlot, Wrap,
 };
@@ -14,6 +15,25 @@ pub struct FeatureReason {
     pub feature: &'static str,
     /// The first object that asks for it.
     pub reason: String,
+    /// Bytes on the device that are there for its sake, instances not shared.
+    pub bytes: u64,
+}
+
+/// The reason of a feature that the scene does not need.
+const ASKED_FOR: &str = "asked for by name";
+
+/// Set a feature; the first reason stays.
+macro_rules! need {
+    ($features:expr, $name:ident if $condition:expr, $reason:expr) => {
+        if $condition && !$features.$name {
+            $features.$name = true;
+            $features.reasons.push(FeatureReason {
+                feature: stringify!($name),
+                reason: $reason.to_string(),
+                bytes: 0,
+            });
+        }
+    };
 }
 
 macro_rules! features {
@@ -33,9 +53,20 @@ macro_rules! features {
                 vec![$((stringify!($name), self.$name),)*]
             }
 
-            /// Everything at once, for comparison.
+            /// Everything at once.
             pub fn all() -> Self {
                 Self { $($name: true,)* reasons: Vec::new() }
+            }
+
+            /// Compiles one in, whether the scene needs it or not; false if there is none of that name.
+            fn require(&mut self, name: &str) -> bool {
+                match name {
+                    $(stringify!($name) => {
+                        need!(self, $name if true, ASKED_FOR);
+                        true
+                    })*
+                    _ => false,
+                }
             }
         }
     };
@@ -152,19 +183,6 @@ features! {
     environment_image,
 }
 
-/// Set a feature; the first reason stays.
-macro_rules! need {
-    ($features:expr, $name:ident if $condition:expr, $reason:expr) => {
-        if $condition && !$features.$name {
-            $features.$name = true;
-            $features.reasons.push(FeatureReason {
-                feature: stringify!($name),
-                reason: $reason.to_string(),
-            });
-        }
-    };
-}
-
 impl Features {
     /// What `scene` requires.
     pub fn of(scene: &Scene) -> Self {
@@ -184,7 +202,35 @@ impl Features {
             }
         }
         features.add_lights(scene);
+        // The two kinds of environment exclude each other.
+        let is_constant = scene
+            .environment
+            .as_ref()
+            .is_some_and(|e| e.image.is_none());
+        for name in &scene.required_features {
+            if name != "environment_image" || !is_constant {
+                features.require(name);
+            }
+        }
+        for reason in &mut features.reasons {
+            reason.bytes = feature_bytes::of(scene, reason.feature);
+        }
         features
+    }
+
+    /// Whether a feature that the scene does not need was asked for.
+    pub fn is_asked_for(&self, name: &str) -> bool {
+        let mut reasons = self.reasons.iter();
+        reasons.any(|r| r.feature == name && r.reason == ASKED_FOR)
+    }
+
+    /// The names of all features.
+    pub fn names() -> Vec<&'static str> {
+        Self::default()
+            .flags()
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect()
     }
 
     fn add_mesh(&mut self, mesh: &Mesh, material: &Material, label: &str) {

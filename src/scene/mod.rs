@@ -5,6 +5,7 @@
 mod bounds;
 pub mod camera;
 pub mod environment;
+mod feature_bytes;
 pub mod features;
 pub mod gltf;
 pub mod light;
@@ -59,6 +60,8 @@ pub struct Scene {
     pub lights: Vec<PunctualLight>,
     /// Light from infinitely far away.
     pub environment: Option<Environment>,
+    /// Names of features that the shader shall have, needed or not, for comparison ([`Features::names`]).
+    pub required_features: Vec<String>,
     /// Extensions that the file names.
     pub extensions: Vec<ExtensionUse>,
     /// Sentences about what was skipped or assumed, each naming its object.
