@@ -4,6 +4,7 @@ use glam::{Vec3, Vec4};
 
 use super::error::LoadError;
 use super::json::Item;
+use super::lenient::Lenient;
 use super::texture_info::{self, RawSlot};
 use crate::scene::{AlphaMode, Material};
 
@@ -38,6 +39,7 @@ pub(super) const SPECULAR_COLOR: usize = 5;
 /// Read all materials of the file.
 pub(super) fn read_all(
     root: &Item,
+    lenient: Lenient,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<RawMaterial>, LoadError> {
     let textures = root.array("textures")?.len();
@@ -45,14 +47,31 @@ pub(super) fn read_all(
     items
         .iter()
         .map(|item| {
-            Reader {
+            let read = Reader {
                 item,
                 textures,
                 warnings,
             }
-            .read()
+            .read();
+            lenient.or_else(read, warnings, || magenta(item))
         })
         .collect()
+}
+
+/// What takes the place of a material that is wrong.
+fn magenta(item: &Item) -> RawMaterial {
+    RawMaterial {
+        label: item.label().to_owned(),
+        material: Material {
+            name: item.name().to_owned(),
+            base_color: Vec4::new(1.0, 0.0, 1.0, 1.0),
+            double_sided: true,
+            unlit: true,
+            ..Material::default()
+        },
+        tex_coords: [0, 1],
+        ..RawMaterial::default()
+    }
 }
 
 /// Reads one material.
