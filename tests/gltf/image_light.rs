@@ -18,7 +18,7 @@ const COLORS: [[u8; 3]; 6] = [
 ];
 
 /// A scene lit by six images of `side` × `side` pixels.
-fn lit(faces: &[Vec<u8>]) -> Builder {
+pub fn lit(faces: &[Vec<u8>]) -> Builder {
     let mut builder = Builder::square();
     let views: Vec<usize> = faces.iter().map(|face| builder.view(face)).collect();
     let images: Vec<Value> = views
@@ -39,7 +39,7 @@ fn lit(faces: &[Vec<u8>]) -> Builder {
 }
 
 /// Faces of one colour each.
-fn colored() -> Vec<Vec<u8>> {
+pub fn colored() -> Vec<Vec<u8>> {
     let face = |color: &[u8; 3]| png(2, 2, Rgb8, &color.repeat(4));
     COLORS.iter().map(face).collect()
 }
