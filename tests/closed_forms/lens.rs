@@ -13,9 +13,7 @@ use etendue::render::{Film, Prepared, Settings, distance_at};
 use etendue::scene::{Lens, Projection, Scene};
 use glam::DVec3;
 
-use super::scene_common::{
-    SceneBuilder, lambert, lamp, render, render_prepared, square, with_integrator,
-};
+use super::scene_common::{SceneBuilder, lambert, lamp, render, render_prepared, square};
 
 /// Half the height of the film at distance 1.
 const HALF: f64 = 0.5;
@@ -256,20 +254,4 @@ fn the_distance_to_focus_at_is_along_the_axis() {
     near(at(&scene, [0.1, 0.9]), 5.0);
     scene.cameras[0].projection = Projection::Panorama;
     assert_eq!(at(&scene, [0.5, 0.5]), None);
-}
-
-#[test]
-fn a_lens_keeps_integrators_in_agreement() {
-    let mut builder = SceneBuilder::new();
-    builder.ground(lambert(0.6), 1.0);
-    builder.sky(2.0);
-    builder.parallel(DVec3::Y * 2.0, DVec3::ZERO, 0.2);
-    builder.scene.cameras[0].lens = Some(Lens {
-        radius: 0.2,
-        focus_distance: 1.0,
-    });
-    for name in ["path", "path_bsdf", "path_lights", "naive"] {
-        let film = render(&builder.scene, &with_integrator(&square(8, 256, 2), name));
-        super::scene_common::assert_radiance(name, &film, 0.6 * 2.0, 0.01);
-    }
 }

@@ -1,6 +1,6 @@
 //! KTX 2.0 and WebP: `images/` holds small files, and beside each what another decoder made of it.
 //!
-//! The KTX2 files were written and decoded by Basis Universal 2.10, the WebP files by libwebp 1.5 (through Pillow).
+//! The KTX2 files were written and decoded by Basis Universal 2.10, the WebP files by libwebp 1.6 (through Pillow).
 //! `uastc_rgb.ktx2` is such a file without its Zstandard and smaller levels.
 
 use std::fs;
