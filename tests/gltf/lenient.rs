@@ -117,6 +117,16 @@ fn wrong_materials_are_magenta_and_unlit() {
 }
 
 #[test]
+fn a_wrong_image_based_light_is_magenta() {
+    let mut builder = crate::image_light::lit(&crate::image_light::colored());
+    builder.json["images"][4] = json!({"uri": "absent.png"});
+    let scene = leniently(&builder, &["image 4 (file \"absent.png\")"]);
+    let environment = scene.environment.expect("an environment");
+    assert_eq!(environment.radiance, [1.0, 0.0, 1.0]);
+    assert!(environment.image.is_none());
+}
+
+#[test]
 fn what_is_right_is_the_same() {
     let folder = TempDir::new().expect("a temporary folder");
     let path = folder.path().join("scene.glb");
