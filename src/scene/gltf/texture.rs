@@ -10,7 +10,7 @@ use super::image::{self, Budget, Decoded, Encoded, Transfer};
 use super::json::Item;
 use super::lenient::Lenient;
 use super::material::{self, RawMaterial, SLOTS};
-use super::{buffer::Data, sampler};
+use super::{buffer::Data, texture_sampler};
 use crate::scene::{Image, Sampler, Texture};
 
 /// The textures that a scene uses.
@@ -37,7 +37,7 @@ pub(super) fn load<'m>(
     let used = uses(materials);
     let items = root.items("textures", "texture")?;
     let mut finder = Finder {
-        samplers: sampler::read_all(root)?,
+        samplers: texture_sampler::read_all(root)?,
         images: root.items("images", "image")?,
         known: BTreeMap::new(),
         encoded: Vec::new(),
@@ -146,7 +146,7 @@ impl<'a> Finder<'a, '_> {
         }
         Ok(Texture {
             image,
-            sampler: sampler.map_or(sampler::DEFAULT, |sampler| self.samplers[sampler]),
+            sampler: sampler.map_or(texture_sampler::DEFAULT, |sampler| self.samplers[sampler]),
         })
     }
 
@@ -155,7 +155,7 @@ impl<'a> Finder<'a, '_> {
         self.encoded.push(Encoded::magenta());
         Texture {
             image: self.encoded.len() - 1,
-            sampler: sampler::DEFAULT,
+            sampler: texture_sampler::DEFAULT,
         }
     }
 }
