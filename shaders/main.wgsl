@@ -58,7 +58,8 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
             reset_ray_counts();
             let sample_index = add_u64(dispatch.first_sample_low, dispatch.first_sample_high, pixel.count);
             random = sampler_begin(position, sample_index, frame.seed);
-            path = path_begin(camera_ray(position, next_2d(&random)), &random);
+            let on_film = next_2d(&random);
+            path = path_begin(camera_ray(position, on_film, lens_numbers(random)), &random);
             on_its_way = true;
         }
         if (!tracing) {
@@ -84,6 +85,16 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
             atomicAdd(&status.advanced, 1u);
         }
     }
+}
+
+// Two uniform numbers for the lens. They have a dimension that no path reaches, so that a lens shifts
+// no number of anything else.
+fn lens_numbers(random: Sampler) -> vec2f {
+    if (!HAS_LENS) {
+        return vec2f(0.0);
+    }
+    let bits = sampler_bits(random, 0xffffffffu);
+    return vec2f(unit_float(bits.x), unit_float(bits.y));
 }
 
 // The pixel of a work item. Neighbouring items share an 8x8 tile; tiles are visited in a permuted

@@ -9,7 +9,7 @@ struct Frame {
     camera_y: vec3f,
     height: u32,
     camera_z: vec3f,
-    // 0 perspective, 1 orthographic.
+    // 0 perspective, 1 orthographic, 2 panorama.
     projection: u32,
     // Half the film's size: tangents of half the field of view, or metres if orthographic.
     half_extent: vec2f,
@@ -39,6 +39,11 @@ struct Frame {
     pad0: u32,
     // The solids around the camera (medium.wgsl).
     media: vec4u,
+    // Radius of the lens, 0 for a pinhole, and 1 / distance of the plane in focus.
+    lens_radius: f32,
+    inverse_focus_distance: f32,
+    pad1: u32,
+    pad2: u32,
 }
 
 // What one dispatch does.

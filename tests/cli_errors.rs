@@ -176,3 +176,62 @@ fn usage() {
     }
     etendue(&["magic"]).refused(&["magic"]);
 }
+
+#[test]
+fn cameras_that_make_no_sense() {
+    let refused = |arguments: &[&str], parts: &[&str]| {
+        render(&[&["--json", "-", "--spp", "100000000"], arguments].concat()).refused(parts);
+    };
+    refused(&["--aperture", "0.1"], &["--focus-distance", "--focus-at"]);
+    refused(&["--focus-distance", "2"], &["--aperture"]);
+    refused(&["--focus-at", "0.5,0.5"], &["--aperture"]);
+    let both = [
+        "--aperture",
+        "0.1",
+        "--focus-distance",
+        "2",
+        "--focus-at",
+        "0.5,0.5",
+    ];
+    refused(&both, &["cannot be used with"]);
+    for (aperture, distance) in [
+        ("-1", "2"),
+        ("f/0", "2"),
+        ("wide", "2"),
+        ("0.1", "0"),
+        ("0.1", "nan"),
+    ] {
+        refused(&["--aperture", aperture, "--focus-distance", distance], &[]);
+    }
+    refused(
+        &["--aperture", "0.1", "--focus-at", "2,0"],
+        &["between 0 and 1"],
+    );
+    refused(&["--fov", "180"], &["--fov"]);
+    refused(
+        &["--view-height", "2"],
+        &["--view-height", "--projection orthographic"],
+    );
+    refused(&["--projection", "orthographic"], &["--view-height METRES"]);
+    refused(&["--projection", "panorama", "--fov", "90"], &["--fov"]);
+    let lens = ["--aperture", "0.1", "--focus-distance", "2"];
+    refused(
+        &[&lens[..], &["--projection", "panorama"]].concat(),
+        &["a panorama has no lens"],
+    );
+    let f_number = [
+        "--projection",
+        "orthographic",
+        "--view-height",
+        "1",
+        "--aperture",
+        "f/2",
+        "--focus-distance",
+        "2",
+    ];
+    refused(&f_number, &["no f-number"]);
+    refused(&["--projection", "fisheye"], &["panorama"]);
+    // Above the box there is nothing.
+    let far = ["--fov", "120", "--aperture", "0.1", "--focus-at", "0,0"];
+    refused(&far, &["--focus-at 0,0: the camera sees no surface there"]);
+}

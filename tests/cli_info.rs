@@ -106,3 +106,22 @@ fn without_a_driver_it_says_how_to_get_one() {
         assert!(run.stderr.contains("apt install"), "{}", run.stderr);
     }
 }
+
+#[test]
+fn what_is_wrong_in_a_file_is_an_error_or_a_warning() {
+    let folder = folder();
+    let path = path_in(&folder, "wrong.gltf");
+    let json = serde_json::json!({
+        "asset": {"version": "2.0"},
+        "materials": [{"name": "paint", "alphaMode": 7}],
+    });
+    std::fs::write(&path, json.to_string()).expect("a file");
+    etendue(&["info", &path]).refused(&["wrong.gltf", "material 0 \"paint\"", "alphaMode"]);
+    let run = etendue(&["info", &path, "--lenient", "--json"]).ends_with(0);
+    let warning = run.json()["warnings"][0].as_str().unwrap_or("").to_owned();
+    assert!(
+        warning.contains("material 0 \"paint\": `alphaMode`"),
+        "{warning}"
+    );
+    assert!(warning.ends_with("magenta is shown instead"), "{warning}");
+}

@@ -299,3 +299,65 @@ fn the_device_may_come_from_the_environment() {
             .starts_with("error: no Vulkan device matches")
     );
 }
+
+#[test]
+fn cameras_have_lenses_and_other_projections() {
+    let folder = folder();
+    let picture = |name: &str, arguments: &[&str]| {
+        let path = path_in(&folder, name);
+        let run = render(&[arguments, &["-o", &path, "--json", "-"]].concat()).ends_with(0);
+        let (picture, metadata) = exr::read(Path::new(&path)).expect("a readable EXR");
+        (picture, metadata, run.json())
+    };
+    let (plain, ..) = picture("plain.exr", &[]);
+    let (pinhole, _, report) = picture(
+        "pinhole.exr",
+        &["--aperture", "0", "--focus-distance", "inf"],
+    );
+    assert_eq!(plain, pinhole, "a lens of no size is none");
+    assert_eq!(
+        (&report["lens_radius"], &report["focus_distance"]),
+        (&0.0.into(), &Value::Null)
+    );
+
+    // The middle of the back wall.
+    let (at, metadata, report) =
+        picture("at.exr", &["--aperture", "f/0.05", "--focus-at", "0.5,0.5"]);
+    let distance = report["focus_distance"].as_f64().expect("a distance");
+    let radius = report["lens_radius"].as_f64().expect("a radius");
+    assert!(radius > 0.0 && distance > 0.0);
+    assert_eq!(metadata.0["etendue.focus_distance"], distance.to_string());
+    let (same, ..) = picture(
+        "same.exr",
+        &[
+            "--aperture",
+            &radius.to_string(),
+            "--focus-distance",
+            &distance.to_string(),
+        ],
+    );
+    assert_eq!(at, same);
+    assert_ne!(at, plain);
+
+    let (wide, ..) = picture("wide.exr", &["--fov", "90"]);
+    assert_ne!(wide, plain);
+    let (flat, ..) = picture(
+        "flat.exr",
+        &["--projection", "orthographic", "--view-height", "2"],
+    );
+    assert_ne!(flat, plain);
+    let path = path_in(&folder, "sphere.exr");
+    let sky = [
+        "render",
+        "scenes/furnace.gltf",
+        "--spp",
+        "1",
+        "--projection",
+        "panorama",
+        "-o",
+        &path,
+    ];
+    cli_support::etendue(&sky).ends_with(0);
+    let (sphere, _) = exr::read(Path::new(&path)).expect("a readable EXR");
+    assert_eq!((sphere.width, sphere.height), (512, 256));
+}

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::camera::CameraArgs;
 use super::environment::EnvironmentArg;
 use super::parse;
 use crate::accel::Preset;
@@ -36,9 +37,18 @@ pub struct RenderArgs {
     #[arg(long, value_name = "NAME|INDEX", default_value = "0")]
     pub camera: Selector,
 
+    /// Its projection and its lens.
+    #[command(flatten)]
+    pub camera_args: CameraArgs,
+
     /// Which scene of the file [default: the one that the file shows first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub scene: Option<Selector>,
+
+    /// Show textures (a missing image, an unsupported format, damaged data) and materials that are
+    /// wrong in the file as magenta, with a warning, instead of refusing the file
+    #[arg(long)]
+    pub lenient: bool,
 
     /// A file in the shader folder `integrator`: path, naive, direct, ao, normals, albedo, depth, ...
     #[arg(long, value_name = "NAME", default_value = "path")]

@@ -29,6 +29,11 @@ pub struct InfoArgs {
     #[arg(long, value_name = "NAME")]
     bvh: Option<Preset>,
 
+    /// Show textures and materials that are wrong in the file as magenta, with a warning, instead of
+    /// refusing the file
+    #[arg(long)]
+    lenient: bool,
+
     /// Print it as JSON
     #[arg(long)]
     json: bool,
@@ -41,6 +46,7 @@ pub struct InfoArgs {
 pub fn run(args: &InfoArgs) -> Result<Exit> {
     let options = gltf::LoadOptions {
         scene: args.scene.clone(),
+        lenient: args.lenient,
     };
     let scene = gltf::load(&args.file, &options)?;
     let valid = scene.validate();

@@ -36,6 +36,12 @@ pub fn metadata(
         ("interrupted", report.interrupted.to_string()),
         ("command", command_line(std::env::args_os().skip(1))),
     ];
+    let number = |(name, value): (_, Option<f64>)| value.map(|v| (name, v.to_string()));
+    let lens = [
+        ("lens_radius", report.lens_radius),
+        ("focus_distance", report.focus_distance),
+    ];
+    list.extend(lens.into_iter().filter_map(number));
     list.extend(environment(args));
     let mut metadata = Metadata::default();
     let named = list.into_iter().map(|(k, v)| (format!("etendue.{k}"), v));

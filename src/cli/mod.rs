@@ -5,6 +5,7 @@
 mod aov;
 mod args;
 mod bvh_report;
+mod camera;
 mod devices;
 mod environment;
 mod exit;

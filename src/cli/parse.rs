@@ -70,6 +70,53 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number of more than 0 that f32 can hold, as its reciprocal can.
+///
+/// # Errors
+/// Anything else.
+pub fn length(text: &str) -> Result<f64, String> {
+    let number = finite(text)?;
+    match (1e-30..=1e30).contains(&number) {
+        true => Ok(number),
+        false => Err(format!("expected a number of more than 0, not \"{text}\"")),
+    }
+}
+
+/// A length, or `inf`.
+///
+/// # Errors
+/// Anything else.
+pub fn focus_distance(text: &str) -> Result<f64, String> {
+    match text.trim() {
+        "inf" => Ok(f64::INFINITY),
+        number => length(number),
+    }
+}
+
+/// Degrees between 0 and 180.
+///
+/// # Errors
+/// Anything else.
+pub fn field_of_view(text: &str) -> Result<f64, String> {
+    let degrees = finite(text)?;
+    match degrees > 0.0 && degrees < 180.0 {
+        true => Ok(degrees),
+        false => Err("expected degrees of more than 0 and less than 180".into()),
+    }
+}
+
+/// `X,Y`, both between 0 and 1.
+///
+/// # Errors
+/// Anything else.
+pub fn point(text: &str) -> Result<[f64; 2], String> {
+    let point = text.split_once(',').and_then(|(x, y)| {
+        let share = |s: &str| finite(s).ok().filter(|c| (0.0..=1.0).contains(c));
+        Some([share(x)?, share(y)?])
+    });
+    point.ok_or_else(|| "expected X,Y, each between 0 and 1, as in 0.5,0.5".into())
+}
+
 /// Stops, such that 2^EV is an ordinary f32.
 ///
 /// # Errors
@@ -116,6 +163,13 @@ mod tests {
     fn numbers() {
         assert_eq!(finite("-1e3"), Ok(-1000.0));
         assert!(not_negative("-1").is_err());
+        for bad in ["0", "-1", "1e-40", "1e40", "nan", "inf"] {
+            assert!(length(bad).is_err(), "{bad}");
+        }
+        assert_eq!(focus_distance("inf"), Ok(f64::INFINITY));
+        assert!(field_of_view("180").is_err() && field_of_view("0").is_err());
+        assert_eq!(point("0.25, 1"), Ok([0.25, 1.0]));
+        assert!(point("0.5").is_err() && point("1.5,0").is_err() && point("0,0,0").is_err());
         assert!(exposure("1000").is_err());
     }
 }

@@ -14,7 +14,7 @@ use super::message::{self, Warnings};
 use super::metadata::metadata;
 use super::outputs::Outputs;
 use super::report::{Report, Seconds, timed};
-use super::{environment, parse, settings, shaders};
+use super::{camera, environment, parse, settings, shaders};
 use crate::accel::BuildOptions;
 use crate::gpu::Device;
 use crate::host::Cache;
@@ -42,12 +42,13 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     settings::check_early(args, &library)?;
 
     // From files to buffers and a kernel on the device.
-    let ((scene, mut settings), device) = load_and_open(args, &mut time, &mut warnings)?;
+    let ((mut scene, mut settings), device) = load_and_open(args, &mut time, &mut warnings)?;
     settings.doublewords = stage("probe", || device.prefers_doublewords(library.cache()))?;
     let options = BuildOptions::of(args.bvh);
     let prepared = timed(&mut time.accel, || {
         Prepared::new(&scene, settings.camera, &options)
     })?;
+    camera::focus(args, &mut scene, &prepared, &settings)?;
     warn_of_scene(&scene, &prepared, args, &mut warnings);
     let upload = || stage("upload", || GpuScene::upload(&device, &prepared));
     let gpu_scene = timed(&mut time.upload, upload)?;
@@ -159,12 +160,14 @@ fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
     let environment = stage("environment", || environment::load(args, warnings))?;
     let options = gltf::LoadOptions {
         scene: args.scene.clone(),
+        lenient: args.lenient,
     };
     let mut scene = gltf::load(&args.file, &options)?;
     if environment.is_some() {
         scene.environment = environment;
     }
     scene.required_features = required_features(args);
+    camera::apply(args, &mut scene)?;
     let valid = stage("validate", || scene.validate());
     valid.with_context(|| args.file.display().to_string())?;
     Ok(scene)

@@ -23,6 +23,12 @@ pub struct Report {
     pub scene_hash: String,
     /// Index and name of the camera.
     pub camera: String,
+    /// Radius of its lens, metres; only where it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lens_radius: Option<f64>,
+    /// Distance of the plane in focus, metres; only where it has a lens, null if far away.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub focus_distance: Option<f64>,
     /// The device's name.
     pub device: String,
     /// Its driver.
@@ -146,6 +152,7 @@ impl Serialize for Spp {
 impl Report {
     /// What is known before rendering.
     pub fn new(args: &RenderArgs, scene: &Scene, settings: &Settings, device: &DeviceInfo) -> Self {
+        let lens = scene.cameras[settings.camera].lens;
         let hex = |hash: &[u8]| hash.iter().map(|byte| format!("{byte:02x}")).collect();
         Self {
             version: env!("CARGO_PKG_VERSION"),
@@ -155,6 +162,8 @@ impl Report {
                 "{} {:?}",
                 settings.camera, scene.cameras[settings.camera].name
             ),
+            lens_radius: lens.map(|lens| lens.radius),
+            focus_distance: lens.map(|lens| lens.focus_distance),
             device: device.name.clone(),
             driver: device.driver.clone(),
             width: settings.width,

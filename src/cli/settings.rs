@@ -17,15 +17,7 @@ pub const VARIANCE: &str = "variance";
 /// # Errors
 /// The first of them.
 pub fn check_early(args: &RenderArgs, library: &ShaderLibrary) -> Result<()> {
-    let square = Camera {
-        name: String::new(),
-        to_world: glam::DMat4::IDENTITY,
-        projection: Projection::Orthographic {
-            xmag: 1.0,
-            ymag: 1.0,
-        },
-    };
-    let settings = with_camera(args, 0, &square);
+    let settings = with_camera(args, 0, &Camera::default());
     settings.check()?;
     program::choice_files(library, &settings)?;
     for integrator in aov_integrators(args) {
@@ -85,6 +77,7 @@ fn default_size(projection: &Projection) -> [u32; 2] {
     let aspect = match *projection {
         Projection::Perspective { aspect, .. } => aspect.unwrap_or(1.0),
         Projection::Orthographic { xmag, ymag } => (xmag / ymag).abs(),
+        Projection::Panorama => 2.0,
     };
     let side = |share: f64| (DEFAULT_SIDE * share).round().clamp(1.0, DEFAULT_SIDE) as u32;
     match aspect.is_finite() && aspect > 0.0 {

@@ -1,6 +1,8 @@
-//! What all layers ask of the machine they run on: a place to keep results between runs, and a stopwatch.
+//! What all layers ask of the machine they run on: a place to keep results between runs, a
+//! stopwatch, and a net under code that may panic.
 
 pub mod cache;
+pub mod guard;
 pub mod stages;
 
 pub use cache::Cache;

@@ -10,7 +10,6 @@
 //! data and subsampled channels are refused by name.
 
 mod check;
-mod guard;
 mod names;
 mod read;
 mod write;

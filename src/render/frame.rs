@@ -9,6 +9,7 @@ use crate::scene::{Projection, Scene};
 pub fn base_frame(scene: &Scene, prepared: &Prepared, settings: &Settings) -> Frame {
     let camera = &scene.cameras[settings.camera];
     let axis = |i: usize| camera.to_world.col(i).truncate().as_vec3().to_array();
+    let lens = camera.lens.filter(|lens| lens.radius > 0.0);
     let (projection, half_extent) = half_extent(&camera.projection, settings);
     let environment = scene.environment.as_ref();
     let rotation = environment.map_or(0.0, |e| e.rotation);
@@ -36,6 +37,8 @@ pub fn base_frame(scene: &Scene, prepared: &Prepared, settings: &Settings) -> Fr
         environment_sin: rotation.sin() as f32,
         punctual_count: prepared.punctual.len() as u32,
         media: prepared.media,
+        lens_radius: lens.map_or(0.0, |lens| lens.radius as f32),
+        inverse_focus_distance: lens.map_or(0.0, |lens| (1.0 / lens.focus_distance) as f32),
         ..Default::default()
     }
 }
@@ -55,5 +58,6 @@ fn half_extent(projection: &Projection, settings: &Settings) -> (u32, [f32; 2]) 
             let (sx, sy) = (xmag.signum(), ymag.signum());
             (1, [(sx * y * aspect) as f32, (sy * y) as f32])
         }
+        Projection::Panorama => (2, [0.0; 2]),
     }
 }

@@ -97,7 +97,7 @@ shared_struct! {
         height: u32,
         /// Back axis.
         camera_z: [f32; 3],
-        /// 0 perspective, 1 orthographic.
+        /// 0 perspective, 1 orthographic, 2 panorama.
         projection: u32,
         /// Half the film's size.
         half_extent: [f32; 2],
@@ -135,6 +135,14 @@ shared_struct! {
         pad0: u32,
         /// The solids around the camera: indices of materials + 1, or 0.
         media: [u32; 4],
+        /// Radius of the lens, metres; 0 for a pinhole.
+        lens_radius: f32,
+        /// 1 / distance of the plane in focus.
+        inverse_focus_distance: f32,
+        /// Unused.
+        pad1: u32,
+        /// Unused.
+        pad2: u32,
     }
 }
 

@@ -229,6 +229,8 @@ pub fn feature_constants(f: &Features) -> Vec<(&'static str, Constant)> {
         ("HAS_DISPERSION", f.dispersion),
         ("HAS_EMISSION", f.emissive),
         ("HAS_UNLIT", f.unlit),
+        ("HAS_LENS", f.lens),
+        ("HAS_PANORAMA", f.panorama),
     ]
     .map(|(name, on)| (name, Constant::Bool(on)))
     .to_vec()

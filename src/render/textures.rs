@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::layout::{self, NONE, TEXTURE_16_BIT, TEXTURE_LINEAR, TEXTURE_SRGB};
+pub use crate::scene::texture::srgb_to_linear;
 use crate::scene::{Filter, Image, Scene, Texels, TextureSlot, Wrap};
 
 /// How the RGB of a texture is encoded in its file.
@@ -115,15 +116,6 @@ fn wrap_bits(wrap: Wrap) -> u32 {
 fn decode_srgb_16([r, g, b, a]: [u16; 4]) -> [u16; 4] {
     let decode = |c: u16| (srgb_to_linear(f64::from(c) / 65535.0) * 65535.0).round() as u16;
     [decode(r), decode(g), decode(b), a]
-}
-
-/// The sRGB transfer function (IEC 61966-2-1), code value to linear, both in [0, 1].
-pub fn srgb_to_linear(c: f64) -> f64 {
-    if c <= 0.04045 {
-        c / 12.92
-    } else {
-        ((c + 0.055) / 1.055).powf(2.4)
-    }
 }
 
 /// Linear value of each 8-bit code.

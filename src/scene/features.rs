@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use super::feature_bytes;
 use super::{
-    AlphaMode, Filter, LightKind, Material, Mesh, Scene, Texels, Texture, TextureSlot, Wrap,
+    AlphaMode, Filter, LightKind, Material, Mesh, Projection, Scene, Texels, Texture, TextureSlot,
+    Wrap,
 };
 
 /// Why a feature is compiled in.
@@ -181,6 +182,10 @@ features! {
     environment,
     /// An equirectangular picture of it.
     environment_image,
+    /// A camera with a lens of some size.
+    lens,
+    /// A panorama camera.
+    panorama,
 }
 
 impl Features {
@@ -202,6 +207,7 @@ impl Features {
             }
         }
         features.add_lights(scene);
+        features.add_cameras(scene);
         // The two kinds of environment exclude each other.
         let is_constant = scene
             .environment
@@ -352,6 +358,16 @@ impl Features {
         let sky = sky.filter(|sky| sky.radiance.iter().any(|&x| x != 0.0));
         need!(self, environment if sky.is_some(), "the environment");
         need!(self, environment_image if sky.is_some_and(|sky| sky.image.is_some()), "the environment");
+    }
+}
+
+impl Features {
+    fn add_cameras(&mut self, scene: &Scene) {
+        for (index, camera) in scene.cameras.iter().enumerate() {
+            let label = label("camera", index, &camera.name);
+            need!(self, lens if camera.lens.is_some_and(|lens| lens.radius > 0.0), label);
+            need!(self, panorama if camera.projection == Projection::Panorama, label);
+        }
     }
 }
 

@@ -16,7 +16,7 @@ pub mod summary;
 pub mod texture;
 mod validate;
 
-pub use camera::{Camera, Projection};
+pub use camera::{Camera, Lens, Projection};
 pub use environment::{Environment, EnvironmentImage};
 pub use features::{FeatureReason, Features};
 pub use light::{LightKind, PunctualLight};

@@ -50,7 +50,7 @@ pub struct Summary {
 pub struct CameraSummary {
     /// Its name, possibly empty.
     pub name: String,
-    /// "perspective" or "orthographic".
+    /// "perspective", "orthographic" or "panorama".
     pub kind: &'static str,
     /// Vertical field of view, degrees (perspective).
     pub yfov_degrees: Option<f64>,
@@ -151,6 +151,7 @@ fn camera(camera: &super::Camera) -> CameraSummary {
         Projection::Orthographic { xmag, ymag } => {
             ("orthographic", None, Some((xmag / ymag).abs()))
         }
+        Projection::Panorama => ("panorama", None, Some(2.0)),
     };
     CameraSummary {
         name: camera.name.clone(),

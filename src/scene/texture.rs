@@ -84,3 +84,12 @@ impl Texels {
         }
     }
 }
+
+/// The sRGB transfer function (IEC 61966-2-1), code value to linear, both in [0, 1].
+pub fn srgb_to_linear(c: f64) -> f64 {
+    if c <= 0.04045 {
+        c / 12.92
+    } else {
+        ((c + 0.055) / 1.055).powf(2.4)
+    }
+}

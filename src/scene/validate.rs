@@ -233,8 +233,20 @@ fn check_camera(camera: &Camera) -> Check {
         Projection::Orthographic { xmag, ymag } => {
             xmag != 0.0 && ymag != 0.0 && xmag.is_finite() && ymag.is_finite()
         }
+        Projection::Panorama => true,
     };
-    ensure(valid, || "its projection is out of range".into())
+    ensure(valid, || "its projection is out of range".into())?;
+    let Some(lens) = camera.lens else {
+        return Ok(());
+    };
+    // As numbers of the shader.
+    let radius = lens.radius as f32;
+    let inverse = (1.0 / lens.focus_distance) as f32;
+    let valid = is_quantity(radius) && lens.focus_distance > 0.0 && inverse.is_finite();
+    ensure(valid, || "its lens is out of range".into())?;
+    ensure(camera.projection != Projection::Panorama, || {
+        "a panorama has no lens".into()
+    })
 }
 
 fn check_light(light: &PunctualLight) -> Check {

@@ -72,6 +72,7 @@ pub fn empty_scene() -> Scene {
                 yfov: 1.0,
                 aspect: None,
             },
+            lens: None,
         }],
         ..Scene::default()
     }

@@ -104,3 +104,34 @@ fn summaries_count_instances() {
     let json = serde_json::to_value(&summary).expect("a summary can be written");
     assert_eq!(json["bounds"].as_array().map(Vec::len), Some(2));
 }
+
+#[test]
+fn lenses_and_panoramas_are_features_of_cameras() {
+    let mut scene = seeds::nodes().scene();
+    let lens = |radius| {
+        Some(Lens {
+            radius,
+            focus_distance: 1.0,
+        })
+    };
+    scene.cameras[0].lens = lens(0.0);
+    assert!(!Features::of(&scene).lens);
+    scene.cameras[0].lens = lens(0.1);
+    scene.cameras[1].projection = Projection::Panorama;
+    scene.validate().expect("a valid scene");
+    let features = Features::of(&scene);
+    assert!(features.lens && features.panorama);
+    let reason = features.reasons.iter().find(|r| r.feature == "panorama");
+    assert!(
+        reason.is_some_and(|r| r.reason.starts_with("camera 1")),
+        "{reason:?}"
+    );
+    scene.cameras[0].lens = Some(Lens {
+        radius: 0.1,
+        focus_distance: 0.0,
+    });
+    assert!(scene.validate().is_err());
+    scene.cameras[0].lens = None;
+    scene.cameras[1].lens = lens(0.1);
+    assert!(scene.validate().is_err(), "a panorama has no lens");
+}

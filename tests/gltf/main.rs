@@ -2,6 +2,7 @@
 
 mod assets;
 mod attributes;
+mod codecs;
 mod common;
 mod errors_data;
 mod errors_files;
@@ -10,7 +11,9 @@ mod features;
 mod files;
 mod fuzz;
 mod geometry;
+mod image_light;
 mod large;
+mod lenient;
 mod materials;
 mod mutate;
 mod pictures;

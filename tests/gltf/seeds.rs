@@ -4,6 +4,7 @@ use serde_json::json;
 
 use crate::common::*;
 use crate::pictures::*;
+use crate::{codecs, image_light};
 
 /// All of them, by name.
 pub fn all() -> Vec<(&'static str, Builder)> {
@@ -16,7 +17,19 @@ pub fn all() -> Vec<(&'static str, Builder)> {
         ("sparse fan", sparse_fan()),
         ("nodes", nodes()),
         ("skin", skin()),
+        ("KTX2", picture("etc1s_rgba.ktx2", "KHR_texture_basisu")),
+        ("WebP", picture("lossy_alpha.webp", "EXT_texture_webp")),
+        (
+            "image-based light",
+            image_light::lit(&image_light::colored()),
+        ),
     ]
+}
+
+fn picture(name: &str, extension: &str) -> Builder {
+    let mut builder = codecs::with_image(&codecs::file(name), extension);
+    builder.json["textures"][0]["source"] = json!(0);
+    builder
 }
 
 /// Every texture slot, every material extension.

@@ -218,6 +218,7 @@ impl SceneBuilder {
             name: String::new(),
             to_world: DMat4::from_cols(columns[0], columns[1], columns[2], eye.extend(1.0)),
             projection,
+            lens: None,
         });
     }
 }

@@ -31,12 +31,17 @@ pub fn device() -> &'static Device {
 /// Renders a scene and insists on what every film has to be: complete and finite.
 pub fn render(scene: &Scene, settings: &Settings) -> Film {
     scene.validate().expect("the test's scene is valid");
-    let device = device();
     let prepared =
         Prepared::new(scene, settings.camera, &BuildOptions::default()).expect("a prepared scene");
-    let gpu_scene = GpuScene::upload(device, &prepared).expect("room on the device");
+    render_prepared(scene, &prepared, settings)
+}
+
+/// The same for a scene that has been prepared, and perhaps been changed since.
+pub fn render_prepared(scene: &Scene, prepared: &Prepared, settings: &Settings) -> Film {
+    let device = device();
+    let gpu_scene = GpuScene::upload(device, prepared).expect("room on the device");
     let library = ShaderLibrary::embedded();
-    let mut renderer = Renderer::new(device, &library, scene, &prepared, &gpu_scene, settings)
+    let mut renderer = Renderer::new(device, &library, scene, prepared, &gpu_scene, settings)
         .expect("a compiled shader");
     let flow = renderer
         .render(&mut |_, _| ControlFlow::Continue(()))

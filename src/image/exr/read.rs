@@ -9,7 +9,8 @@ use ::exr::meta::attribute::{AttributeValue, Text};
 use ::exr::meta::header::LayerAttributes;
 use ::exr::prelude::{ReadChannels, ReadLayers, f16};
 
-use super::{FORMAT, check, guard, names};
+use super::{FORMAT, check, names};
+use crate::host::guard;
 use crate::image::{Channel, ImageError, Metadata, Picture, source};
 
 /// Reads any flat OpenEXR file; half and u32 samples become f32 (u32 above 2²⁴ is rounded).

@@ -23,8 +23,8 @@ fn read(item: &Item) -> Result<Camera, LoadError> {
     };
     Ok(Camera {
         name: item.name().to_owned(),
-        to_world: DMat4::IDENTITY,
         projection,
+        ..Camera::default()
     })
 }
 
@@ -70,6 +70,6 @@ pub(super) fn place(camera: &Camera, item: &Item, to_world: &DMat4) -> Camera {
     Camera {
         name: name.to_owned(),
         to_world: transform::rigid(to_world),
-        projection: camera.projection,
+        ..camera.clone()
     }
 }

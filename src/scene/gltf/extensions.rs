@@ -9,7 +9,9 @@ use super::json::{Item, shorten};
 use crate::scene::ExtensionUse;
 
 /// The extensions that étendue renders.
-pub const SUPPORTED: [&str; 17] = [
+pub const SUPPORTED: &[&str] = &[
+    "EXT_lights_image_based",
+    "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -26,6 +28,7 @@ pub const SUPPORTED: [&str; 17] = [
     "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
 ];
 
@@ -46,9 +49,8 @@ fn effect(name: &str) -> &'static str {
         "KHR_draco_mesh_compression" => "meshes compressed with Draco",
         "EXT_meshopt_compression" | "KHR_meshopt_compression" => "compressed buffers",
         "EXT_mesh_gpu_instancing" => "instances; each mesh is shown once",
-        "KHR_texture_basisu" => "KTX2 textures",
-        "EXT_texture_webp" => "WebP textures",
-        "EXT_lights_image_based" => "image-based light",
+        "EXT_texture_avif" => "AVIF textures",
+        "MSFT_texture_dds" => "DDS textures",
         "KHR_node_visibility" => "hiding of nodes; all are shown",
         "KHR_animation_pointer" => "animations of properties",
         "KHR_xmp_json_ld" | "KHR_xmp" => "metadata",
@@ -57,14 +59,17 @@ fn effect(name: &str) -> &'static str {
 }
 
 /// List the extensions of the file, refuse required ones that are not supported, and warn of the rest.
+/// One that only names textures' images is no reason to refuse the file if wrong textures are none.
 pub(super) fn check(
     root: &Item,
     json: &Value,
+    lenient: bool,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<ExtensionUse>, LoadError> {
     let required = names(root, "extensionsRequired")?;
     let used = names(root, "extensionsUsed")?;
-    if let Some(name) = required.iter().find(|name| !is_supported(name)) {
+    let will_do = |name: &str| is_supported(name) || lenient && is_image_format(name);
+    if let Some(name) = required.iter().find(|name| !will_do(name)) {
         return Err(LoadError::Extension {
             path: root.file().to_owned(),
             name: shorten(name),
@@ -99,6 +104,10 @@ fn warning(name: &str, listed: bool) -> Option<String> {
         ));
     }
     (!listed).then(|| format!("{name} is used but not listed in `extensionsUsed`; it is honoured"))
+}
+
+fn is_image_format(name: &str) -> bool {
+    ["EXT_texture_avif", "MSFT_texture_dds"].contains(&name)
 }
 
 fn is_supported(name: &str) -> bool {

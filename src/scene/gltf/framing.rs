@@ -2,10 +2,8 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
-use crate::scene::{Camera, Projection, Scene};
-
-/// Vertical field of view, radians.
-const YFOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
+use crate::scene::camera::DEFAULT_YFOV;
+use crate::scene::{Camera, Scene};
 
 /// A camera from slightly above the front that sees the whole scene, and no more than that where
 /// the picture is square.
@@ -14,14 +12,11 @@ pub(super) fn camera(scene: &Scene) -> Camera {
     let toward = DVec3::new(0.4, 0.3, 1.0).normalize();
     let right = DVec3::Y.cross(toward).normalize();
     let turn = DMat3::from_cols(right, toward.cross(right), toward);
-    let eye = center + toward * (radius / (YFOV / 2.0).sin());
+    let eye = center + toward * (radius / (DEFAULT_YFOV / 2.0).sin());
     Camera {
         name: "framing".to_owned(),
         to_world: DMat4::from_mat3_translation(turn, eye),
-        projection: Projection::Perspective {
-            yfov: YFOV,
-            aspect: None,
-        },
+        ..Camera::default()
     }
 }
 

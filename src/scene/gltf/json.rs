@@ -229,12 +229,22 @@ impl<'a> Item<'a> {
     /// The indices in the array `key` into a list of `len` objects called `noun`.
     pub fn indices(&self, key: &str, noun: &str, len: usize) -> Result<Vec<usize>, LoadError> {
         let values = self.array(key)?.iter();
-        let check = |value: &Value| {
-            let index = integer(value)
-                .ok_or_else(|| self.mismatch(key, "an array of non-negative integers", value))?;
-            self.check_index(key, index, noun, len)
-        };
-        values.map(check).collect()
+        values
+            .map(|value| self.element(key, value, noun, len))
+            .collect()
+    }
+
+    /// `value`, an element of the array `key`, as an index into a list of `len` objects called `noun`.
+    pub fn element(
+        &self,
+        key: &str,
+        value: &Value,
+        noun: &str,
+        len: usize,
+    ) -> Result<usize, LoadError> {
+        let index = integer(value)
+            .ok_or_else(|| self.mismatch(key, "an array of non-negative integers", value))?;
+        self.check_index(key, index, noun, len)
     }
 
     fn check_index(

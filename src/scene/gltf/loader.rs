@@ -9,11 +9,12 @@ use super::buffer::Data;
 use super::error::LoadError;
 use super::files::Files;
 use super::json::Item;
+use super::lenient::Lenient;
 use super::material::{self, RawMaterial};
 use super::node::{Nodes, Placed};
 use super::primitive::Source;
 use super::texture::{self, Textures};
-use super::{LoadOptions, accessor, camera, extensions, framing, light, meshes, pose};
+use super::{LoadOptions, accessor, camera, extensions, framing, image_light, light, meshes, pose};
 use crate::host::stages::stage;
 use crate::scene::{Scene, TextureSlot};
 
@@ -31,7 +32,7 @@ pub(super) fn load(
         source: path.to_owned(),
         ..Scene::default()
     };
-    scene.extensions = extensions::check(&root, json, &mut scene.warnings)?;
+    scene.extensions = extensions::check(&root, json, options.lenient, &mut scene.warnings)?;
     let nodes = Nodes::read(&root)?;
     let roots = choose_scene(&root, &nodes, options, &mut scene)?;
     let placed = nodes.place(&roots, &mut scene.warnings)?;
@@ -39,7 +40,10 @@ pub(super) fn load(
     place_cameras_and_lights(&root, &nodes, &placed, &mut scene)?;
 
     let mut files = Files::new(bytes);
-    load_content(&root, &nodes, &placed, &mut files, binary, &mut scene)?;
+    let lenient = Lenient(options.lenient);
+    load_content(
+        &root, &nodes, &placed, &mut files, binary, lenient, &mut scene,
+    )?;
     scene.hash = files.hash();
     if scene.cameras.is_empty() {
         scene.cameras.push(framing::camera(&scene));
@@ -58,11 +62,12 @@ fn load_content(
     placed: &[Placed],
     files: &mut Files,
     binary: Option<&[u8]>,
+    lenient: Lenient,
     scene: &mut Scene,
 ) -> Result<(), LoadError> {
     let data = stage("buffers", || Data::load(root, files, binary))?;
     let accessors = accessor::read_all(root, &data)?;
-    let mut materials = material::read_all(root, &mut scene.warnings)?;
+    let mut materials = material::read_all(root, lenient, &mut scene.warnings)?;
     materials.push(default_material());
     let source = Source {
         data: &data,
@@ -75,7 +80,11 @@ fn load_content(
     let used: BTreeSet<usize> = scene.meshes.iter().map(|mesh| mesh.material).collect();
     let used_materials = used.iter().map(|&index| &materials[index]);
     let textures = stage("images", || {
-        texture::load(root, &data, files, used_materials, &mut scene.warnings)
+        let warnings = &mut scene.warnings;
+        texture::load(root, &data, files, used_materials, lenient, warnings)
+    })?;
+    stage("images", || {
+        image_light::load(root, &data, files, lenient, scene)
     })?;
     fill_materials(scene, materials, &used, &textures);
     scene.textures = textures.textures;

@@ -4,6 +4,7 @@ use glam::{Vec3, Vec4};
 
 use super::error::LoadError;
 use super::json::Item;
+use super::lenient::Lenient;
 use super::material_extensions::drop_unread;
 use super::texture_info::{self, RawSlot};
 use crate::scene::{AlphaMode, Material, TextureSlot};
@@ -43,8 +44,29 @@ pub(super) enum Slot {
     IridescenceThickness,
 }
 
+/// All slots, in the order of their declaration.
+const ALL_SLOTS: [Slot; SLOTS] = [
+    Slot::BaseColor,
+    Slot::MetallicRoughness,
+    Slot::Normal,
+    Slot::Emissive,
+    Slot::Specular,
+    Slot::SpecularColor,
+    Slot::Transmission,
+    Slot::DiffuseTransmission,
+    Slot::DiffuseTransmissionColor,
+    Slot::Clearcoat,
+    Slot::ClearcoatRoughness,
+    Slot::ClearcoatNormal,
+    Slot::SheenColor,
+    Slot::SheenRoughness,
+    Slot::Anisotropy,
+    Slot::Iridescence,
+    Slot::IridescenceThickness,
+];
+
 /// Number of texture slots of a [`Material`].
-pub(super) const SLOTS: usize = 17;
+const SLOTS: usize = 17;
 
 /// The slots that are looked up in tangent space.
 pub(super) const IN_TANGENT_SPACE: [Slot; 3] =
@@ -54,6 +76,12 @@ impl RawMaterial {
     /// What a slot of the file reads.
     pub fn slot(&self, slot: Slot) -> Option<RawSlot> {
         self.slots[slot as usize]
+    }
+
+    /// The slots that read something.
+    pub fn filled_slots(&self) -> impl Iterator<Item = (Slot, &RawSlot)> {
+        let slots = ALL_SLOTS.iter().zip(&self.slots);
+        slots.filter_map(|(slot, raw)| Some((*slot, raw.as_ref()?)))
     }
 
     pub(super) fn set(&mut self, slot: Slot, value: Option<RawSlot>) {
@@ -100,6 +128,7 @@ impl RawMaterial {
 /// Read all materials of the file.
 pub(super) fn read_all(
     root: &Item,
+    lenient: Lenient,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<RawMaterial>, LoadError> {
     let textures = root.array("textures")?.len();
@@ -107,14 +136,31 @@ pub(super) fn read_all(
     items
         .iter()
         .map(|item| {
-            Reader {
+            let read = Reader {
                 item,
                 textures,
                 warnings,
             }
-            .read()
+            .read();
+            lenient.or_else(read, warnings, || magenta(item))
         })
         .collect()
+}
+
+/// What takes the place of a material that is wrong.
+fn magenta(item: &Item) -> RawMaterial {
+    RawMaterial {
+        label: item.label().to_owned(),
+        material: Material {
+            name: item.name().to_owned(),
+            base_color: Vec4::new(1.0, 0.0, 1.0, 1.0),
+            double_sided: true,
+            unlit: true,
+            ..Material::default()
+        },
+        tex_coords: [0, 1],
+        ..RawMaterial::default()
+    }
 }
 
 /// Reads one material.

@@ -8,13 +8,16 @@ mod attributes;
 mod buffer;
 mod camera;
 mod container;
+mod cube;
 mod elements;
 mod error;
 mod extensions;
 mod files;
 mod framing;
 mod image;
+mod image_light;
 mod json;
+mod lenient;
 mod light;
 mod loader;
 mod material;
@@ -27,6 +30,7 @@ mod tangent_faces;
 mod tangents;
 mod texture;
 mod texture_info;
+mod texture_sampler;
 mod topology;
 mod transform;
 mod uri;
@@ -46,6 +50,9 @@ use crate::host::stages::stage;
 pub struct LoadOptions {
     /// Which of the file's scenes; else the file's default, else the first.
     pub scene: Option<Selector>,
+    /// Show a texture or a material that is wrong in the file in magenta, with a warning, instead of
+    /// refusing the file.
+    pub lenient: bool,
 }
 
 /// Load a scene from a .gltf or .glb file; its content decides which it is.

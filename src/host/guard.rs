@@ -1,4 +1,4 @@
-//! A panic in crate `exr` becomes a value.
+//! A panic in a decoder that is not ours becomes a value.
 
 use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
@@ -11,10 +11,10 @@ thread_local! {
 
 /// Runs `decode`; `None` if it panicked, of which nothing is printed.
 ///
-/// Crate `exr` asserts, indexes and adds on what it has read: a broken file may
-/// make it panic (its B44 decoder does), which must reach the user as one sentence
-/// about that file. It keeps no state between calls, so nothing broken survives.
-pub(super) fn catch<T>(decode: impl FnOnce() -> T) -> Option<T> {
+/// For crates that assert, index and add on what they have read, and keep no state between calls, so
+/// that nothing broken survives: `exr` (its B44 decoder panics on some broken files) and `basisu`.
+/// What they do must reach the user as one sentence about the file.
+pub fn catch<T>(decode: impl FnOnce() -> T) -> Option<T> {
     install_quiet_hook();
     let before = IS_QUIET.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(decode));
