@@ -117,7 +117,7 @@ fn walls() -> Vec<Triangle> {
 fn model(name: &str) -> Option<Vec<Triangle>> {
     let folder = std::env::var_os("ETENDUE_SHARED")?;
     let path = Path::new(&folder).join(format!("assets/models/{name}/{name}.gltf"));
-    let options = gltf::LoadOptions { scene: None };
+    let options = gltf::LoadOptions::default();
     let scene = match gltf::load(&path, &options) {
         Ok(scene) => scene,
         Err(error) => {

@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::environment::EnvironmentArg;
 use super::parse;
+use super::pose::PoseArgs;
 use crate::accel::Preset;
 use crate::image::ToneMap;
 use crate::scene::Selector;
@@ -39,6 +40,9 @@ pub struct RenderArgs {
     /// Which scene of the file [default: the one that the file shows first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub scene: Option<Selector>,
+
+    #[command(flatten)]
+    pub pose: PoseArgs,
 
     /// A file in the shader folder `integrator`: path, naive, direct, ao, normals, albedo, depth, ...
     #[arg(long, value_name = "NAME", default_value = "path")]

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::bvh_report::BvhReport;
 use super::exit::Exit;
+use super::pose::PoseArgs;
 use super::{info_text, message};
 use crate::accel::{BuildOptions, Preset};
 use crate::render::Prepared;
@@ -23,6 +24,9 @@ pub struct InfoArgs {
     /// Which scene of the file [default: the one that the file shows first]
     #[arg(long, value_name = "NAME|INDEX")]
     scene: Option<Selector>,
+
+    #[command(flatten)]
+    pose: PoseArgs,
 
     /// Build the acceleration structure too, as `etendue render` does with this preset (fast,
     /// balanced or best), and tell its build time and size
@@ -41,6 +45,8 @@ pub struct InfoArgs {
 pub fn run(args: &InfoArgs) -> Result<Exit> {
     let options = gltf::LoadOptions {
         scene: args.scene.clone(),
+        animation: args.pose.animation.clone(),
+        at: args.pose.at,
     };
     let scene = gltf::load(&args.file, &options)?;
     let valid = scene.validate();

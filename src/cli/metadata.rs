@@ -36,6 +36,7 @@ pub fn metadata(
         ("interrupted", report.interrupted.to_string()),
         ("command", command_line(std::env::args_os().skip(1))),
     ];
+    list.extend(report.animation.clone().map(|text| ("animation", text)));
     list.extend(environment(args));
     let mut metadata = Metadata::default();
     let named = list.into_iter().map(|(k, v)| (format!("etendue.{k}"), v));

@@ -15,6 +15,7 @@ mod message;
 mod metadata;
 mod outputs;
 mod parse;
+mod pose;
 mod progress;
 mod render;
 mod report;

@@ -159,6 +159,8 @@ fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
     let environment = stage("environment", || environment::load(args, warnings))?;
     let options = gltf::LoadOptions {
         scene: args.scene.clone(),
+        animation: args.pose.animation.clone(),
+        at: args.pose.at,
     };
     let mut scene = gltf::load(&args.file, &options)?;
     if environment.is_some() {

@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use super::args::RenderArgs;
 use super::bvh_report::BvhReport;
 use super::message::Warnings;
+use super::pose;
 use crate::gpu::DeviceInfo;
 use crate::host::stages::{Startup, startup};
 use crate::render::{Film, Progress, Settings};
@@ -21,6 +22,8 @@ pub struct Report {
     pub scene: String,
     /// BLAKE3 over all bytes read for it.
     pub scene_hash: String,
+    /// Index, name and moment of the animation; null where none poses the scene.
+    pub animation: Option<String>,
     /// Index and name of the camera.
     pub camera: String,
     /// The device's name.
@@ -151,6 +154,7 @@ impl Report {
             version: env!("CARGO_PKG_VERSION"),
             scene: args.file.display().to_string(),
             scene_hash: hex(&scene.hash),
+            animation: pose::describe(scene),
             camera: format!(
                 "{} {:?}",
                 settings.camera, scene.cameras[settings.camera].name

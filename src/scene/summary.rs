@@ -17,6 +17,12 @@ pub struct Summary {
     pub scenes: Vec<String>,
     /// Which of them this is.
     pub scene_index: usize,
+    /// Names of the animations in the file.
+    pub animations: Vec<String>,
+    /// Which of them poses the nodes, if any.
+    pub animation_index: Option<usize>,
+    /// Its moment, seconds.
+    pub animation_seconds: Option<f64>,
     /// Cameras to choose from.
     pub cameras: Vec<CameraSummary>,
     /// Punctual lights.
@@ -125,6 +131,9 @@ impl Summary {
                 .collect(),
             scenes: scene.scene_names.clone(),
             scene_index: scene.scene_index,
+            animations: scene.animation_names.clone(),
+            animation_index: scene.animation.map(|animation| animation.index),
+            animation_seconds: scene.animation.map(|animation| animation.seconds),
             cameras: scene.cameras.iter().map(camera).collect(),
             lights: scene.lights.iter().map(light).collect(),
             materials: materials(scene),

@@ -175,7 +175,13 @@ fn unknown_scenes_list_the_known_ones() {
     std::fs::write(&path, builder.glb()).expect("writable");
     let open = |scene: &str| {
         let Ok(scene) = scene.parse();
-        load(&path, &LoadOptions { scene: Some(scene) })
+        load(
+            &path,
+            &LoadOptions {
+                scene: Some(scene),
+                ..LoadOptions::default()
+            },
+        )
     };
     assert_eq!(open("night").expect("it exists").scene_index, 1);
     assert_eq!(open("0").expect("it exists").scene_index, 0);

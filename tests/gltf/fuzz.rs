@@ -125,6 +125,13 @@ fn mutate(seed: &Seed, random: &mut Random) -> Vec<u8> {
     bytes
 }
 
+/// A moment within the seeds' animations.
+const POSED: LoadOptions = LoadOptions {
+    scene: None,
+    animation: None,
+    at: Some(0.4),
+};
+
 /// Load, and use the scene as the program does; the sentence if it is refused.
 fn try_load(folder: &Path, bytes: &[u8]) -> Result<(), String> {
     match load_slice(&folder.join("mutant.gltf"), bytes, &LoadOptions::default()) {
@@ -137,6 +144,12 @@ fn try_load(folder: &Path, bytes: &[u8]) -> Result<(), String> {
                 features.reasons.len()
             );
             serde_json::to_string(&Summary::of(&scene)).expect("a summary can be written");
+            if scene.animation_names.is_empty() {
+                return Ok(());
+            }
+            let posed = load_slice(&folder.join("mutant.gltf"), bytes, &POSED);
+            let posed = posed.map_err(|error| error.to_string())?;
+            posed.validate().expect("a loaded scene is valid");
             Ok(())
         }
         Err(error) => Err(error.to_string()),

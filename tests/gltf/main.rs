@@ -1,8 +1,10 @@
 //! Loading glTF: well-formed files, malformed ones, real ones and mutated ones.
 
+mod animation;
 mod assets;
 mod attributes;
 mod common;
+mod draco;
 mod errors_data;
 mod errors_files;
 mod errors_values;
@@ -10,9 +12,14 @@ mod features;
 mod files;
 mod fuzz;
 mod geometry;
+mod instancing;
 mod large;
 mod materials;
+mod meshopt_codec;
+mod meshopt_data;
+mod morph;
 mod mutate;
 mod pictures;
 mod placement;
 mod seeds;
+mod skin;

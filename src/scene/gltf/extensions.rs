@@ -9,13 +9,18 @@ use super::json::{Item, shorten};
 use crate::scene::ExtensionUse;
 
 /// The extensions that étendue renders.
-pub const SUPPORTED: [&str; 7] = [
+pub const SUPPORTED: [&str; 12] = [
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_specular",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
+    "KHR_node_visibility",
     "KHR_texture_transform",
 ];
 
@@ -33,13 +38,9 @@ fn effect(name: &str) -> &'static str {
         "KHR_materials_diffuse_transmission" => "translucence",
         "KHR_materials_variants" => "variants of materials; the default one is shown",
         "KHR_materials_pbrSpecularGlossiness" => "specular-glossiness materials",
-        "KHR_draco_mesh_compression" => "meshes compressed with Draco",
-        "EXT_meshopt_compression" | "KHR_meshopt_compression" => "compressed buffers",
-        "EXT_mesh_gpu_instancing" => "instances; each mesh is shown once",
         "KHR_texture_basisu" => "KTX2 textures",
         "EXT_texture_webp" => "WebP textures",
         "EXT_lights_image_based" => "image-based light",
-        "KHR_node_visibility" => "hiding of nodes; all are shown",
         "KHR_animation_pointer" => "animations of properties",
         "KHR_xmp_json_ld" | "KHR_xmp" => "metadata",
         _ => "what it describes",

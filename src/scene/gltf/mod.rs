@@ -4,24 +4,31 @@
 //! allocation is larger than a fixed multiple of the bytes that are really there.
 
 mod accessor;
+mod animation;
 mod attributes;
 mod buffer;
 mod camera;
 mod container;
+mod draco;
 mod elements;
 mod error;
 mod extensions;
 mod files;
 mod framing;
 mod image;
+mod instancing;
 mod json;
 mod light;
 mod loader;
 mod material;
 mod meshes;
+mod meshopt;
+mod morph;
 mod node;
 mod pose;
 mod primitive;
+mod sampler;
+mod skin;
 mod tangent_faces;
 mod tangents;
 mod texture;
@@ -41,10 +48,15 @@ use super::selector::Selector;
 use crate::host::stages::stage;
 
 /// What to load from a file.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct LoadOptions {
     /// Which of the file's scenes; else the file's default, else the first.
     pub scene: Option<Selector>,
+    /// Which animation poses the nodes; none, unless there is a moment: then the first one does.
+    pub animation: Option<Selector>,
+    /// The moment of the animation, seconds from its beginning, finite; before the first and after the last key
+    /// these hold. None: 0.
+    pub at: Option<f64>,
 }
 
 /// Load a scene from a .gltf or .glb file; its content decides which it is.
