@@ -7,7 +7,8 @@ use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
 use crate::common::*;
-use crate::mutate::Random;
+use crate::fuzz::variable;
+use crate::mutate::{Random, mutate_bytes};
 
 /// The square with texture coordinates, normals, colours and joints, positions and normals quantised to 14 bits,
 /// connectivity by the edgebreaker.
@@ -265,4 +266,55 @@ fn changed_streams_give_a_scene_or_a_sentence() {
         refused > 500 && loaded > 500,
         "{refused} refused, {loaded} loaded"
     );
+}
+
+/// The streams of a real model, some of their bytes changed.
+#[test]
+fn changed_streams_of_a_model_give_a_scene_or_a_sentence() {
+    let Some(models) = shared("assets/models") else {
+        return;
+    };
+    let bytes = std::fs::read(models.join("chess-board.glb")).expect("a file");
+    let word =
+        |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+    let length = word(12) as usize;
+    let json: Value = serde_json::from_slice(&bytes[20..20 + length]).expect("JSON");
+    let mut random = Random(1);
+    let cases = variable("ETENDUE_FUZZ_CASES", 2000) / 20;
+    let mut refused = 0;
+    for case in 0..cases {
+        let mut builder = Builder {
+            json: json.clone(),
+            bin: bytes[28 + length..].to_vec(),
+        };
+        // The smallest meshes, and no images: these take the time.
+        let mesh = 3 + random.below(5);
+        let primitive = &mut builder.json["meshes"][mesh]["primitives"][0];
+        primitive["material"] = json!(null);
+        let view = primitive["extensions"]["KHR_draco_mesh_compression"]["bufferView"].clone();
+        builder.json["nodes"] = json!([{"mesh": mesh}]);
+        builder.json["scenes"] = json!([{"nodes": [0]}]);
+        let view = &builder.json["bufferViews"][view.as_u64().expect("an index") as usize];
+        let number = |key: &str| view[key].as_u64().unwrap_or(0) as usize;
+        let (start, length) = (number("byteOffset"), number("byteLength"));
+        // Half of the changes hit what says how the rest is to be read.
+        let length = if case % 2 == 0 {
+            256.min(length)
+        } else {
+            length
+        };
+        mutate_bytes(&mut builder.bin[start..start + length], &mut random);
+        match builder.load_with(&Default::default()) {
+            Ok(scene) => scene.validate().unwrap_or_else(|error| panic!("{error}")),
+            Err(error) => {
+                assert!(
+                    error.to_string().contains("KHR_draco_mesh_compression"),
+                    "{error}"
+                );
+                refused += 1;
+            }
+        }
+    }
+    println!("{refused} of {cases} refused");
+    assert!(refused > 0);
 }

@@ -22,7 +22,8 @@ struct Seed {
     bin: Vec<u8>,
 }
 
-fn variable(name: &str, default: u64) -> u64 {
+/// A number from the environment.
+pub fn variable(name: &str, default: u64) -> u64 {
     let text = std::env::var(name).ok();
     text.and_then(|text| text.parse().ok()).unwrap_or(default)
 }
