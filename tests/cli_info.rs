@@ -71,6 +71,61 @@ fn info_refuses_what_cannot_be_read() {
     etendue(&["info", "scenes/furnace.gltf", "--scene", "9"]).refused(&["no scene 9"]);
 }
 
+/// A file with a mesh that an animation moves from x = 0 to x = 8 in two seconds.
+fn moving(folder: &tempfile::TempDir) -> String {
+    let floats = [
+        0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, // the triangle
+        0.0, 2.0, // times
+        0.0, 0.0, 0.0, 8.0, 0.0, 0.0, // places
+    ];
+    let bytes: Vec<u8> = floats.iter().flat_map(|x| x.to_le_bytes()).collect();
+    std::fs::write(folder.path().join("a.bin"), bytes).expect("a file");
+    let scene = path_in(folder, "a.gltf");
+    let text = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],
+        "buffers":[{"uri":"a.bin","byteLength":68}],"bufferViews":[{"buffer":0,"byteLength":68}],
+        "accessors":[
+            {"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
+            {"bufferView":0,"byteOffset":36,"componentType":5126,"type":"SCALAR","count":2},
+            {"bufferView":0,"byteOffset":44,"componentType":5126,"type":"VEC3","count":2}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "animations":[{"name":"slide","samplers":[{"input":1,"output":2}],
+            "channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}]}"#;
+    std::fs::write(&scene, text).expect("a file");
+    scene
+}
+
+#[test]
+fn info_shows_the_moment_of_an_animation() {
+    let folder = folder();
+    let scene = moving(&folder);
+    let left = |arguments: &[&str]| {
+        let all = [&["info", &scene, "--json"], arguments].concat();
+        let json = etendue(&all).ends_with(0).json();
+        (
+            json["bounds"][0][0].as_f64(),
+            json["animation_index"].as_u64(),
+        )
+    };
+    assert_eq!(left(&[]), (Some(0.0), None));
+    assert_eq!(left(&["--at", "0.5"]), (Some(2.0), Some(0)));
+    assert_eq!(
+        left(&["--animation", "slide", "--at", "99"]),
+        (Some(8.0), Some(0))
+    );
+    assert_eq!(
+        left(&["--animation", "0", "--at", "-1"]),
+        (Some(0.0), Some(0))
+    );
+    let text = etendue(&["info", &scene, "--at", "0.5"])
+        .ends_with(0)
+        .stdout;
+    assert!(text.contains("\"slide\"  shown at 0.5 s"), "{text}");
+    etendue(&["info", &scene, "--animation", "walk"])
+        .refused(&["no animation \"walk\"; choose one of 0 \"slide\""]);
+    etendue(&["info", &scene, "--at", "soon"]).refused(&["--at", "soon"]);
+    etendue(&["info", "scenes/furnace.gltf", "--at", "1"]).refused(&["the file has no animation"]);
+}
+
 #[test]
 fn names_from_a_file_do_not_reach_the_terminal_raw() {
     let folder = folder();

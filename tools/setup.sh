@@ -124,12 +124,15 @@ need_vulkan() {
     return 3
 }
 
-# What the tests use beside the program: spirv-val, the validation layers, and Python for tools/make-scenes.
+# What the tests use beside the program: spirv-val, the validation layers, Python for tools/make-scenes, and a C++
+# compiler.
 need_test_tools() {
     local packages=()
     command -v spirv-val >/dev/null || packages+=(spirv-tools)
     compgen -G '/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation*.json' >/dev/null ||
         packages+=(vulkan-validationlayers)
     command -v python3 >/dev/null || packages+=(python3)
+    # The reference encoder of compressed buffers, which the loader's tests compile.
+    command -v c++ >/dev/null || packages+=(g++)
     [[ ${#packages[@]} == 0 ]] || install "some tests need ${packages[*]}" "${packages[@]}"
 }

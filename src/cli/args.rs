@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::camera::CameraArgs;
 use super::environment::EnvironmentArg;
+use super::load::LoadArgs;
 use super::parse;
 use crate::accel::Preset;
 use crate::image::ToneMap;
@@ -41,14 +42,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub camera_args: CameraArgs,
 
-    /// Which scene of the file [default: the one that the file shows first]
-    #[arg(long, value_name = "NAME|INDEX")]
-    pub scene: Option<Selector>,
-
-    /// Show textures (a missing image, an unsupported format, damaged data) and materials that are
-    /// wrong in the file as magenta, with a warning, instead of refusing the file
-    #[arg(long)]
-    pub lenient: bool,
+    #[command(flatten)]
+    pub load: LoadArgs,
 
     /// A file in the shader folder `integrator`: path, naive, direct, ao, normals, albedo, depth, ...
     #[arg(long, value_name = "NAME", default_value = "path")]

@@ -8,10 +8,11 @@ use serde::Serialize;
 
 use super::bvh_report::BvhReport;
 use super::exit::Exit;
+use super::load::LoadArgs;
 use super::{info_text, message};
 use crate::accel::{BuildOptions, Preset};
 use crate::render::Prepared;
-use crate::scene::{Scene, Selector, Summary, gltf};
+use crate::scene::{Scene, Summary, gltf};
 
 /// Arguments of `etendue info`.
 #[derive(Debug, Args)]
@@ -20,19 +21,13 @@ pub struct InfoArgs {
     #[arg(value_name = "SCENE")]
     file: PathBuf,
 
-    /// Which scene of the file [default: the one that the file shows first]
-    #[arg(long, value_name = "NAME|INDEX")]
-    scene: Option<Selector>,
+    #[command(flatten)]
+    load: LoadArgs,
 
     /// Build the acceleration structure too, as `etendue render` does with this preset (fast,
     /// balanced or best), and tell its build time and size
     #[arg(long, value_name = "NAME")]
     bvh: Option<Preset>,
-
-    /// Show textures and materials that are wrong in the file as magenta, with a warning, instead of
-    /// refusing the file
-    #[arg(long)]
-    lenient: bool,
 
     /// Print it as JSON
     #[arg(long)]
@@ -44,11 +39,7 @@ pub struct InfoArgs {
 /// # Errors
 /// The file is malformed.
 pub fn run(args: &InfoArgs) -> Result<Exit> {
-    let options = gltf::LoadOptions {
-        scene: args.scene.clone(),
-        lenient: args.lenient,
-    };
-    let scene = gltf::load(&args.file, &options)?;
+    let scene = gltf::load(&args.file, &args.load.options())?;
     let valid = scene.validate();
     valid.with_context(|| args.file.display().to_string())?;
     let described = Described {

@@ -16,6 +16,8 @@ pub fn describe(summary: &Summary, bvh: Option<&BvhReport>) -> String {
         "acceleration structure",
         bvh.map_or(vec![], BvhReport::rows),
     );
+    text += &table("animations", animations(summary));
+    text += &table("variants of materials", variants(summary));
     text += &table("cameras", cameras(summary));
     text += &table("lights", lights(summary));
     text += &table("materials", materials(summary));
@@ -52,6 +54,20 @@ fn overview(s: &Summary) -> String {
         row("BLAKE3", s.hash.clone()),
     ];
     format!("{}\n{}", s.source, align(rows))
+}
+
+fn variants(s: &Summary) -> Rows {
+    let row = |(i, name): (usize, &String)| vec![i.to_string(), quoted(name)];
+    s.variants.iter().enumerate().map(row).collect()
+}
+
+fn animations(s: &Summary) -> Rows {
+    let row = |(i, name): (usize, &String)| {
+        let moment = s.animation_seconds.filter(|_| s.animation_index == Some(i));
+        let shown = moment.map_or(String::new(), |seconds| format!("shown at {seconds} s"));
+        vec![i.to_string(), quoted(name), shown]
+    };
+    s.animations.iter().enumerate().map(row).collect()
 }
 
 fn cameras(s: &Summary) -> Rows {

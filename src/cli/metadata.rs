@@ -42,6 +42,7 @@ pub fn metadata(
         ("focus_distance", report.focus_distance),
     ];
     list.extend(lens.into_iter().filter_map(number));
+    list.extend(report.animation.clone().map(|text| ("animation", text)));
     list.extend(environment(args));
     let mut metadata = Metadata::default();
     let named = list.into_iter().map(|(k, v)| (format!("etendue.{k}"), v));

@@ -158,11 +158,7 @@ fn load_and_open(
 fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
     // The environment first: it is read faster, so a mistake in it is found sooner.
     let environment = stage("environment", || environment::load(args, warnings))?;
-    let options = gltf::LoadOptions {
-        scene: args.scene.clone(),
-        lenient: args.lenient,
-    };
-    let mut scene = gltf::load(&args.file, &options)?;
+    let mut scene = gltf::load(&args.file, &args.load.options())?;
     if environment.is_some() {
         scene.environment = environment;
     }

@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::args::RenderArgs;
 use super::bvh_report::BvhReport;
+use super::load;
 use super::message::Warnings;
 use crate::gpu::DeviceInfo;
 use crate::host::stages::{Startup, startup};
@@ -21,6 +22,8 @@ pub struct Report {
     pub scene: String,
     /// BLAKE3 over all bytes read for it.
     pub scene_hash: String,
+    /// Index, name and moment of the animation; null where none poses the scene.
+    pub animation: Option<String>,
     /// Index and name of the camera.
     pub camera: String,
     /// Radius of its lens, metres; only where it has one.
@@ -158,6 +161,7 @@ impl Report {
             version: env!("CARGO_PKG_VERSION"),
             scene: args.file.display().to_string(),
             scene_hash: hex(&scene.hash),
+            animation: load::pose(scene),
             camera: format!(
                 "{} {:?}",
                 settings.camera, scene.cameras[settings.camera].name

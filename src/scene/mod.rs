@@ -43,6 +43,10 @@ pub struct Scene {
     pub scene_names: Vec<String>,
     /// Which of them this is.
     pub scene_index: usize,
+    /// Names of the animations in the file, in the order of the file (empty string if unnamed).
+    pub animation_names: Vec<String>,
+    /// The animation that poses the nodes, if one was asked for.
+    pub animation: Option<PlayedAnimation>,
     /// Cameras that the scene's nodes place, in the order of the node walk; never empty after
     /// loading, since a camera that frames the scene is added where the file has none.
     pub cameras: Vec<Camera>,
@@ -62,12 +66,23 @@ pub struct Scene {
     pub environment: Option<Environment>,
     /// Names of features that the shader shall have, needed or not, for comparison ([`Features::names`]).
     pub required_features: Vec<String>,
+    /// Names of the variants of materials that the file has.
+    pub variant_names: Vec<String>,
     /// Extensions that the file names.
     pub extensions: Vec<ExtensionUse>,
     /// Sentences about what was skipped or assumed, each naming its object.
     pub warnings: Vec<String>,
     /// Sentences about choices that need no action, as the camera of a file without one.
     pub notes: Vec<String>,
+}
+
+/// A moment of an animation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlayedAnimation {
+    /// Index into [`Scene::animation_names`].
+    pub index: usize,
+    /// Seconds from the animation's beginning.
+    pub seconds: f64,
 }
 
 /// An extension that a file lists.

@@ -15,6 +15,12 @@ pub struct Summary {
     pub scenes: Vec<String>,
     /// Which of them this is.
     pub scene_index: usize,
+    /// Names of the animations in the file.
+    pub animations: Vec<String>,
+    /// Which of them poses the nodes, if any.
+    pub animation_index: Option<usize>,
+    /// Its moment, seconds.
+    pub animation_seconds: Option<f64>,
     /// Cameras to choose from.
     pub cameras: Vec<CameraSummary>,
     /// Punctual lights.
@@ -35,6 +41,8 @@ pub struct Summary {
     pub unique_vertices: u64,
     /// Corners of the box around everything, metres; none if there is nothing.
     pub bounds: Option<[[f64; 3]; 2]>,
+    /// Names of the variants of its materials.
+    pub variants: Vec<String>,
     /// Extensions that the file names.
     pub extensions: Vec<ExtensionSummary>,
     /// What the shader is compiled with, and why.
@@ -123,6 +131,9 @@ impl Summary {
                 .collect(),
             scenes: scene.scene_names.clone(),
             scene_index: scene.scene_index,
+            animations: scene.animation_names.clone(),
+            animation_index: scene.animation.map(|animation| animation.index),
+            animation_seconds: scene.animation.map(|animation| animation.seconds),
             cameras: scene.cameras.iter().map(camera).collect(),
             lights: scene.lights.iter().map(light).collect(),
             materials: materials(scene),
@@ -135,6 +146,7 @@ impl Summary {
             bounds: scene
                 .bounds()
                 .map(|(low, high)| [low.to_array(), high.to_array()]),
+            variants: scene.variant_names.clone(),
             extensions: scene.extensions.iter().map(extension).collect(),
             features: Features::of(scene).reasons,
             warnings: scene.warnings.clone(),

@@ -102,3 +102,49 @@ fn vertex_colours_of_every_type_are_read() {
         silent(&scene);
     }
 }
+
+/// KHR_mesh_quantization: every type that it allows for normals, tangents and texture coordinates.
+#[test]
+fn quantised_attributes_are_read() {
+    let load = |name: &str, shape: &str, component: u32, bytes: &[u8], normalized: bool| {
+        let mut builder = seeds::given_tangents();
+        let accessor = builder.accessor(&bytes.repeat(4), component, shape, 4);
+        let view = builder.json["accessors"][accessor]["bufferView"]
+            .as_u64()
+            .expect("a view");
+        builder.json["bufferViews"][view as usize]["byteStride"] = json!(bytes.len());
+        builder.json["accessors"][accessor]["normalized"] = json!(normalized);
+        builder.attribute(name, accessor);
+        builder.scene().meshes.remove(0)
+    };
+    for (component, bytes) in [(I8, vec![0, 0x81, 0, 0]), (I16, shorts(&[0, 0x8001, 0, 0]))] {
+        let mesh = load("NORMAL", "VEC3", component, &bytes, true);
+        assert_eq!(mesh.normals, [Vec3::NEG_Y; 4], "{component}");
+        let mut bytes = bytes.clone();
+        let size = bytes.len() / 4;
+        bytes.copy_within(size..2 * size, 3 * size);
+        let mesh = load("TANGENT", "VEC4", component, &bytes, true);
+        assert_eq!(
+            mesh.tangents,
+            [Vec4::new(0.0, -1.0, 0.0, -1.0); 4],
+            "{component}"
+        );
+    }
+    for (component, bytes, normalized, expected) in [
+        (I8, vec![0x7F, 0x81, 0, 0], true, [1.0, -1.0]),
+        (I8, vec![0x7F, 0x81, 0, 0], false, [127.0, -127.0]),
+        (U8, vec![255, 51, 0, 0], true, [1.0, 0.2]),
+        (U8, vec![255, 51, 0, 0], false, [255.0, 51.0]),
+        (I16, shorts(&[0x7FFF, 0x8001]), true, [1.0, -1.0]),
+        (I16, shorts(&[0x7FFF, 0x8001]), false, [32767.0, -32767.0]),
+        (U16, shorts(&[65535, 13107]), true, [1.0, 0.2]),
+        (U16, shorts(&[65535, 13107]), false, [65535.0, 13107.0]),
+    ] {
+        let mesh = load("TEXCOORD_0", "VEC2", component, &bytes, normalized);
+        assert_eq!(
+            mesh.tex_coords[0],
+            [Vec2::from(expected); 4],
+            "{component} {normalized}"
+        );
+    }
+}

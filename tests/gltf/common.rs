@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use etendue::scene::Scene;
-use etendue::scene::gltf::{LoadError, LoadOptions, load};
-use glam::Vec3;
+use etendue::scene::gltf::{LoadError, LoadOptions, load, load_slice};
+use etendue::scene::{Scene, Selector};
+use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -129,7 +129,10 @@ impl Builder {
     pub fn glb(&self) -> Vec<u8> {
         let mut file = self.json.clone();
         if !self.bin.is_empty() {
-            file["buffers"] = json!([{"byteLength": self.bin.len()}]);
+            if file["buffers"].is_null() {
+                file["buffers"] = json!([{}]);
+            }
+            file["buffers"][0]["byteLength"] = json!(self.bin.len());
         }
         let mut text = file.to_string().into_bytes();
         text.resize(text.len().next_multiple_of(4), b' ');
@@ -154,6 +157,66 @@ impl Builder {
         let scene = self.load().unwrap_or_else(|error| panic!("{error}"));
         scene.validate().unwrap_or_else(|error| panic!("{error}"));
         scene
+    }
+
+    /// Load it as a .glb file that must be right, posed by its animation `animation` at a moment.
+    pub fn scene_at(&self, animation: usize, seconds: f64) -> Scene {
+        let options = LoadOptions {
+            animation: Some(Selector::Index(animation)),
+            at: Some(seconds),
+            ..LoadOptions::default()
+        };
+        let scene = self.load_with(&options);
+        let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+        scene.validate().unwrap_or_else(|error| panic!("{error}"));
+        scene
+    }
+
+    /// Load it as a .glb file in a folder of its own.
+    pub fn load_with(&self, options: &LoadOptions) -> Result<Scene, LoadError> {
+        load_slice(Path::new("scene.gltf"), &self.glb(), options)
+    }
+
+    /// Append floats as an accessor, and return its index.
+    pub fn floats(&mut self, values: &[f32], shape: &str) -> usize {
+        let components = match shape {
+            "SCALAR" => 1,
+            "VEC2" => 2,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            _ => 16,
+        };
+        self.accessor(&floats(values), F32, shape, values.len() / components)
+    }
+
+    /// Append an animation of one channel, and return its index.
+    pub fn animate(
+        &mut self,
+        (node, path): (usize, &str),
+        interpolation: &str,
+        times: &[f32],
+        output: usize,
+    ) -> usize {
+        let input = self.floats(times, "SCALAR");
+        self.push(
+            "animations",
+            json!({
+                "samplers": [{"input": input, "output": output, "interpolation": interpolation}],
+                "channels": [{"sampler": 0, "target": {"node": node, "path": path}}],
+            }),
+        )
+    }
+
+    /// The sentence with which it is refused when posed by its first animation.
+    pub fn pose_error(&self) -> String {
+        let options = LoadOptions {
+            at: Some(0.5),
+            ..LoadOptions::default()
+        };
+        match self.load_with(&options) {
+            Ok(_) => panic!("it loaded, but must not: {}", self.json),
+            Err(error) => error.to_string(),
+        }
     }
 
     /// The sentence with which it is refused.
@@ -234,4 +297,24 @@ pub fn silent(scene: &Scene) {
 /// The corners of the square.
 pub fn square_positions() -> Vec<Vec3> {
     SQUARE.chunks(3).map(Vec3::from_slice).collect()
+}
+
+/// The positions of an instance's mesh in the world.
+pub fn world_positions(scene: &Scene, instance: usize) -> Vec<DVec3> {
+    let instance = &scene.instances[instance];
+    let positions = scene.meshes[instance.mesh].positions.iter();
+    positions
+        .map(|p| instance.to_world.transform_point3(p.as_dvec3()))
+        .collect()
+}
+
+/// All points agree within rounding of f32.
+pub fn assert_close(found: &[DVec3], expected: &[[f64; 3]]) {
+    assert_eq!(found.len(), expected.len());
+    for (found, &expected) in found.iter().zip(expected) {
+        assert!(
+            found.abs_diff_eq(DVec3::from(expected), 2e-7),
+            "{found}, not {expected:?}"
+        );
+    }
 }

@@ -22,7 +22,8 @@ struct Seed {
     bin: Vec<u8>,
 }
 
-fn variable(name: &str, default: u64) -> u64 {
+/// A number from the environment.
+pub fn variable(name: &str, default: u64) -> u64 {
     let text = std::env::var(name).ok();
     text.and_then(|text| text.parse().ok()).unwrap_or(default)
 }
@@ -125,6 +126,15 @@ fn mutate(seed: &Seed, random: &mut Random) -> Vec<u8> {
     bytes
 }
 
+/// A moment within the seeds' animations.
+const POSED: LoadOptions = LoadOptions {
+    lenient: false,
+    variant: None,
+    scene: None,
+    animation: None,
+    at: Some(0.4),
+};
+
 /// Load, and use the scene as the program does; the sentence if it is refused.
 fn try_load(folder: &Path, bytes: &[u8]) -> Result<(), String> {
     match load_slice(&folder.join("mutant.gltf"), bytes, &LoadOptions::default()) {
@@ -137,6 +147,12 @@ fn try_load(folder: &Path, bytes: &[u8]) -> Result<(), String> {
                 features.reasons.len()
             );
             serde_json::to_string(&Summary::of(&scene)).expect("a summary can be written");
+            if scene.animation_names.is_empty() {
+                return Ok(());
+            }
+            let posed = load_slice(&folder.join("mutant.gltf"), bytes, &POSED);
+            let posed = posed.map_err(|error| error.to_string())?;
+            posed.validate().expect("a loaded scene is valid");
             Ok(())
         }
         Err(error) => Err(error.to_string()),

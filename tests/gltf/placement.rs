@@ -137,27 +137,43 @@ fn deep_hierarchies_do_not_overflow_the_stack() {
 }
 
 #[test]
-fn skins_morphs_and_animations_show_their_rest_pose() {
-    let scene = seeds::skin().scene();
-    for part in [
-        "node 0: its skin is not posed",
-        "mesh 0 \"square\": its morph targets",
-        "its animation is not played",
-    ] {
-        warned(&scene, part);
-        assert!(
-            scene
-                .warnings
-                .iter()
-                .all(|warning| warning.contains("rest pose"))
-        );
-    }
-    // The skinned mesh follows its joint and not its node.
+fn hidden_nodes_hide_what_is_below_them_but_no_camera() {
+    let mut builder = seeds::nodes();
+    let hidden = json!({"KHR_node_visibility": {"visible": false}});
+    let shown = json!({"KHR_node_visibility": {"visible": true}});
+    builder.json["extensionsUsed"] = json!(["KHR_lights_punctual", "KHR_node_visibility"]);
+    builder.json["nodes"][2]["extensions"]["KHR_node_visibility"] =
+        hidden["KHR_node_visibility"].clone();
+    builder.json["nodes"][4]["extensions"]["KHR_node_visibility"] =
+        shown["KHR_node_visibility"].clone();
+    let scene = builder.scene();
+    let names: Vec<&str> = scene.instances.iter().map(|i| i.name.as_str()).collect();
     assert_eq!(
-        scene.instances[0].to_world.transform_point3(DVec3::ZERO),
-        DVec3::new(0.0, 0.0, 4.0)
+        names,
+        ["leaf"],
+        "the mesh of node 3 is below the hidden node 2"
     );
-    assert_eq!(scene.instances[0].to_world.determinant(), 1.0);
+    assert_eq!((scene.lights.len(), scene.cameras.len()), (0, 2));
+    silent(&scene);
+    builder.json["nodes"][1]["extensions"] = hidden;
+    assert_eq!(
+        (
+            builder.scene().instances.len(),
+            builder.scene().meshes.len()
+        ),
+        (0, 0)
+    );
+    builder.json["nodes"][1]["extensions"] = json!({"KHR_node_visibility": {}});
+    assert_eq!(
+        builder.scene().instances.len(),
+        1,
+        "nodes are visible unless they say no"
+    );
+    builder.json["nodes"][1]["extensions"] = json!({"KHR_node_visibility": {"visible": 0}});
+    refused(
+        builder,
+        &["node 1 \"leaf\", KHR_node_visibility: `visible` must be true or false"],
+    );
 }
 
 #[test]

@@ -5,6 +5,7 @@ use serde_json::json;
 use crate::common::*;
 use crate::pictures::*;
 use crate::{codecs, image_light};
+use crate::{draco, meshopt_data};
 
 /// All of them, by name.
 pub fn all() -> Vec<(&'static str, Builder)> {
@@ -22,6 +23,18 @@ pub fn all() -> Vec<(&'static str, Builder)> {
         (
             "image-based light",
             image_light::lit(&image_light::colored()),
+        ),
+        ("spline", spline()),
+        ("instances", instances()),
+        ("Draco edgebreaker", draco::edgebreaker()),
+        ("Draco sequential", draco::sequential()),
+        (
+            "meshopt 0",
+            meshopt_data::square("EXT_meshopt_compression", 0),
+        ),
+        (
+            "meshopt 1",
+            meshopt_data::square("KHR_meshopt_compression", 1),
         ),
     ]
 }
@@ -162,18 +175,82 @@ pub fn nodes() -> Builder {
     builder
 }
 
-/// A skinned, morphed and animated mesh.
+/// A skinned, morphed and animated mesh: the second joint turns, and a target bends the square.
 pub fn skin() -> Builder {
-    let mut builder = Builder::square();
+    let mut builder = normal_map();
     let identity = [
         1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.,
     ];
-    let bind = builder.accessor(&floats(&identity), F32, "MAT4", 1);
-    builder.json["nodes"] =
-        json!([{"mesh": 0, "skin": 0, "scale": [9, 9, 9]}, {"translation": [0, 0, 4]}]);
+    let bind = builder.accessor(&floats(&identity.repeat(2)), F32, "MAT4", 2);
+    let joints = builder.accessor(&[0, 1, 0, 0].repeat(4), U8, "VEC4", 4);
+    let weights = builder.floats(&[0.25, 0.75, 0., 0.].repeat(4), "VEC4");
+    let normals = builder.floats(&[0., 0., 1.].repeat(4), "VEC3");
+    builder.attribute("JOINTS_0", joints);
+    builder.attribute("WEIGHTS_0", weights);
+    builder.attribute("NORMAL", normals);
+    let bent = builder.floats(&[0., 0., 0., 0., 0., 0., 0., 0., 1., 0., 0., 1.], "VEC3");
+    let turned = builder.floats(&[0.5, 0., 0.].repeat(4), "VEC3");
+    builder.json["meshes"][0]["primitives"][0]["targets"] =
+        json!([{"POSITION": bent, "NORMAL": turned}, {"POSITION": bent}]);
+    builder.json["meshes"][0]["weights"] = json!([0, 0.5]);
+    builder.json["nodes"] = json!([
+        {"mesh": 0, "skin": 0, "scale": [9, 9, 9]},
+        {"translation": [0, 0, 4], "children": [2]},
+        {"name": "elbow"},
+    ]);
     builder.json["scenes"][0]["nodes"] = json!([0, 1]);
-    builder.json["skins"] = json!([{"joints": [1], "inverseBindMatrices": bind}]);
-    builder.json["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 0}]);
-    builder.json["animations"] = json!([{"channels": [], "samplers": []}]);
+    builder.json["skins"] = json!([{"joints": [1, 2], "inverseBindMatrices": bind}]);
+    let times = builder.floats(&[0., 1.], "SCALAR");
+    let turns = builder.accessor(&shorts(&[0, 0, 0, 0x7FFF, 0, 0, 0x7FFF, 0]), I16, "VEC4", 2);
+    builder.json["accessors"][turns]["normalized"] = json!(true);
+    let morphs = builder.floats(&[0., 0., 1., 0.5], "SCALAR");
+    builder.json["animations"] = json!([{
+        "name": "wave",
+        "samplers": [{"input": times, "output": turns}, {"input": times, "output": morphs}],
+        "channels": [
+            {"sampler": 0, "target": {"node": 2, "path": "rotation"}},
+            {"sampler": 1, "target": {"node": 0, "path": "weights"}},
+        ],
+    }]);
+    builder
+}
+
+/// A node that moves along a cubic and grows in steps.
+pub fn spline() -> Builder {
+    let mut builder = Builder::square();
+    let times = builder.floats(&[0., 2.], "SCALAR");
+    // In-tangent, value, out-tangent of each key: the curve (t³, 1, 0) exactly.
+    let path = [
+        0., 0., 0., 0., 1., 0., 0., 0., 0., 12., 0., 0., 8., 1., 0., 12., 0., 0.,
+    ];
+    let path = builder.floats(&path, "VEC3");
+    let sizes = builder.floats(&[1., 1., 1., 2., 3., 4.], "VEC3");
+    builder.json["animations"] = json!([{
+        "samplers": [
+            {"input": times, "output": path, "interpolation": "CUBICSPLINE"},
+            {"input": times, "output": sizes, "interpolation": "STEP"},
+        ],
+        "channels": [
+            {"sampler": 0, "target": {"node": 0, "path": "translation"}},
+            {"sampler": 1, "target": {"node": 0, "path": "scale"}},
+        ],
+    }]);
+    builder
+}
+
+/// Three squares by one node: moved, turned by a quarter about +Z, made larger.
+pub fn instances() -> Builder {
+    let mut builder = Builder::square();
+    let moved = builder.floats(&[0., 0., 0., 5., 0., 0., 0., 5., 0.], "VEC3");
+    let quarter = (0.5_f32.sqrt() * 32767.0).round() as u16;
+    let turns = [0, 0, 0, 0x7FFF, 0, 0, quarter, quarter, 0, 0, 0, 0x7FFF];
+    let turns = builder.accessor(&shorts(&turns), I16, "VEC4", 3);
+    builder.json["accessors"][turns]["normalized"] = json!(true);
+    let sizes = builder.floats(&[1., 1., 1., 1., 1., 1., 2., 3., 4.], "VEC3");
+    builder.json["nodes"][0]["translation"] = json!([0, 0, 1]);
+    builder.json["nodes"][0]["extensions"] = json!({"EXT_mesh_gpu_instancing": {
+        "attributes": {"TRANSLATION": moved, "ROTATION": turns, "SCALE": sizes, "_ID": 0},
+    }});
+    builder.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
     builder
 }

@@ -91,8 +91,20 @@ impl Shape {
         }
     }
 
+    /// How many numbers make one element.
+    pub fn components(self) -> usize {
+        match self {
+            Self::Scalar => 1,
+            Self::Vec2 => 2,
+            Self::Vec3 => 3,
+            Self::Vec4 | Self::Mat2 => 4,
+            Self::Mat3 => 9,
+            Self::Mat4 => 16,
+        }
+    }
+
     /// Bytes of one element; columns of matrices begin at multiples of 4.
-    fn size(self, component: Component) -> usize {
+    pub fn size(self, component: Component) -> usize {
         let columns = |count: usize| count * (count * component.size()).next_multiple_of(4);
         match self {
             Self::Scalar => component.size(),
@@ -119,6 +131,8 @@ pub(super) struct Accessor<'a> {
     pub count: usize,
     /// Where the elements are; none: they are zero.
     pub block: Option<Block>,
+    /// Elements one after the other that an extension holds; they take the place of those in `block`.
+    pub decoded: Option<Vec<u8>>,
     pub sparse: Option<Sparse>,
 }
 
@@ -163,6 +177,7 @@ fn read<'a>(item: Item<'a>, data: &Data) -> Result<Accessor<'a>, LoadError> {
         normalized: item.flag("normalized")?,
         count,
         block: read_block(&item, data, size, count, true)?,
+        decoded: None,
         sparse,
         item,
     })

@@ -4,10 +4,11 @@ use bytemuck::allocation::try_cast_vec;
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
-use super::accessor::{Component, Shape};
+use super::accessor::{Accessor, Component, Shape};
 use super::elements::PARALLEL;
 use super::error::LoadError;
 use super::material::IN_TANGENT_SPACE;
+use super::morph;
 use super::primitive::{Primitive, Window};
 use super::tangents::{any_tangent, flat_normal};
 use crate::scene::Mesh;
@@ -16,20 +17,20 @@ use crate::scene::Mesh;
 pub(super) fn read(
     primitive: &mut Primitive,
     mesh: &mut Mesh,
-    window: Window,
+    window: &Window,
 ) -> Result<(), LoadError> {
-    mesh.positions = positions(primitive, window.clone())?;
-    normals(primitive, mesh, window.clone())?;
-    tex_coords(primitive, mesh, window.clone())?;
-    given_tangents(primitive, mesh, window.clone())?;
+    mesh.positions = positions(primitive, window)?;
+    normals(primitive, mesh, window)?;
+    tex_coords(primitive, mesh, window)?;
+    given_tangents(primitive, mesh, window)?;
     colors(primitive, mesh, window)
 }
 
-fn positions(primitive: &mut Primitive, window: Window) -> Result<Vec<Vec3>, LoadError> {
+fn positions(primitive: &mut Primitive, window: &Window) -> Result<Vec<Vec3>, LoadError> {
     let Some(accessor) = primitive.attribute("POSITION")? else {
         return Ok(Vec::new());
     };
-    let positions: Vec<Vec3> = floats::<3, _>(accessor.floats(primitive.source.data, window)?);
+    let positions: Vec<Vec3> = floats(displaced::<3>(primitive, "POSITION", accessor, window)?);
     let parts = positions.par_iter().with_min_len(PARALLEL);
     let broken = parts.filter(|p| !p.is_finite()).count();
     if broken > 0 {
@@ -40,6 +41,18 @@ fn positions(primitive: &mut Primitive, window: Window) -> Result<Vec<Vec3>, Loa
     Ok(positions)
 }
 
+/// The elements of an attribute, as the morph targets displace them.
+fn displaced<const N: usize>(
+    primitive: &Primitive,
+    name: &str,
+    accessor: &Accessor,
+    window: &Window,
+) -> Result<Vec<[f32; N]>, LoadError> {
+    let mut values = accessor.floats::<N>(primitive.source.data, window.clone())?;
+    morph::displace(primitive, name, &mut values, window)?;
+    Ok(values)
+}
+
 /// A vector of glam's from an array, without a copy of the allocation where the layouts agree.
 fn floats<const N: usize, V: From<[f32; N]> + bytemuck::Pod>(raw: Vec<[f32; N]>) -> Vec<V>
 where
@@ -48,12 +61,12 @@ where
     try_cast_vec(raw).unwrap_or_else(|(_, raw)| raw.into_iter().map(V::from).collect())
 }
 
-fn normals(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Result<(), LoadError> {
+fn normals(primitive: &mut Primitive, mesh: &mut Mesh, window: &Window) -> Result<(), LoadError> {
     let Some(accessor) = primitive.attribute("NORMAL")? else {
         return Ok(());
     };
     accessor.expect_shape("NORMAL", &[Shape::Vec3])?;
-    mesh.normals = floats(accessor.floats::<3>(primitive.source.data, window)?);
+    mesh.normals = floats(displaced::<3>(primitive, "NORMAL", accessor, window)?);
     let normalized = |(vertex, normal): (usize, &mut Vec3)| match unit(*normal) {
         Some(unit) => {
             *normal = unit;
@@ -106,14 +119,14 @@ fn replace_normals(mesh: &mut Mesh, broken: &[usize]) {
 fn given_tangents(
     primitive: &mut Primitive,
     mesh: &mut Mesh,
-    window: Window,
+    window: &Window,
 ) -> Result<(), LoadError> {
     let wanted = primitive.needs_tangents && !mesh.normals.is_empty();
     let Some(accessor) = primitive.attribute("TANGENT")?.filter(|_| wanted) else {
         return Ok(());
     };
     accessor.expect_shape("TANGENT", &[Shape::Vec4])?;
-    let raw: Vec<Vec4> = floats(accessor.floats::<4>(primitive.source.data, window)?);
+    let raw: Vec<Vec4> = floats(displaced::<4>(primitive, "TANGENT", accessor, window)?);
     let mut broken = 0;
     let tangents = raw.into_iter().zip(&mesh.normals);
     mesh.tangents = tangents
@@ -137,7 +150,11 @@ fn given_tangents(
 }
 
 /// Keep the sets that the material reads; a missing one is zero, which shows one texel.
-fn tex_coords(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Result<(), LoadError> {
+fn tex_coords(
+    primitive: &mut Primitive,
+    mesh: &mut Mesh,
+    window: &Window,
+) -> Result<(), LoadError> {
     let material = primitive.raw_material();
     for set in 0..2 {
         let reads =
@@ -170,7 +187,7 @@ fn tex_coords(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Res
             continue;
         };
         accessor.expect_shape(&name, &[Shape::Vec2])?;
-        mesh.tex_coords[set] = floats(accessor.floats::<2>(primitive.source.data, window.clone())?);
+        mesh.tex_coords[set] = floats(displaced::<2>(primitive, &name, accessor, window)?);
         let broken = replace(&mut mesh.tex_coords[set], |uv| uv.is_finite(), Vec2::ZERO);
         if broken > 0 {
             primitive.warn(&format!(
@@ -192,21 +209,20 @@ fn replace<T: Copy + Send + Sync>(
     bad.map(|value| *value = other).count()
 }
 
-fn colors(primitive: &mut Primitive, mesh: &mut Mesh, window: Window) -> Result<(), LoadError> {
+fn colors(primitive: &mut Primitive, mesh: &mut Mesh, window: &Window) -> Result<(), LoadError> {
     let Some(accessor) = primitive.attribute("COLOR_0")? else {
         return Ok(());
     };
     accessor.expect_shape("COLOR_0", &[Shape::Vec3, Shape::Vec4])?;
-    let data = primitive.source.data;
     mesh.colors = match accessor.shape {
         Shape::Vec3 => {
-            let colors = accessor.floats::<3>(data, window)?;
+            let colors = displaced::<3>(primitive, "COLOR_0", accessor, window)?;
             colors
                 .into_iter()
                 .map(|[r, g, b]| Vec4::new(r, g, b, 1.0))
                 .collect()
         }
-        _ => floats(accessor.floats::<4>(data, window)?),
+        _ => floats(displaced::<4>(primitive, "COLOR_0", accessor, window)?),
     };
     if accessor.component != Component::F32 && !accessor.normalized {
         primitive.warn(

@@ -74,15 +74,15 @@ impl Accessor<'_> {
     /// they do not lie one after the other, or are no multiple of three.
     pub fn index_triples(&self, data: &Data) -> Result<Option<Vec<[u32; 3]>>, LoadError> {
         let size = self.component.size();
-        let tight = self.block.filter(|block| block.stride == size);
+        let tight = self.stored(data)?.filter(|stored| stored.stride == size);
         let plain = self.sparse.is_none() && self.count.is_multiple_of(3);
-        let (Some(block), true, Shape::Scalar) = (tight, plain, self.shape) else {
+        let (Some(stored), true, Shape::Scalar) = (tight, plain, self.shape) else {
             return Ok(None);
         };
         let triples = match self.component {
-            Component::U8 => self.triples(data, block, |[b]| u32::from(b)),
-            Component::U16 => self.triples(data, block, |b| u32::from(u16::from_le_bytes(b))),
-            Component::U32 => self.triples(data, block, u32::from_le_bytes),
+            Component::U8 => self.triples(data, stored, |[b]| u32::from(b)),
+            Component::U16 => self.triples(data, stored, |b| u32::from(u16::from_le_bytes(b))),
+            Component::U32 => self.triples(data, stored, u32::from_le_bytes),
             _ => return Ok(None),
         };
         triples.map(Some)
@@ -91,15 +91,28 @@ impl Accessor<'_> {
     fn triples<const SIZE: usize>(
         &self,
         data: &Data,
-        block: Block,
+        stored: Stored,
         decode: impl Fn([u8; SIZE]) -> u32 + Sync,
     ) -> Result<Vec<[u32; 3]>, LoadError> {
         let count = self.count / 3;
         self.claim::<u32, 3>(data, count)?;
-        let bytes = &data.view(block.view)?[block.offset..];
-        let triple = |index: usize| decode_element(bytes, 3 * SIZE * index, &decode);
+        let triple = |index: usize| decode_element(stored.bytes, 3 * SIZE * index, &decode);
         let all = (0..count).into_par_iter().with_min_len(PARALLEL);
         Ok(all.map(triple).collect())
+    }
+
+    /// The bytes of the elements; none where they are zero.
+    fn stored<'b>(&'b self, data: &'b Data) -> Result<Option<Stored<'b>>, LoadError> {
+        if let Some(bytes) = &self.decoded {
+            let stride = self.shape.size(self.component);
+            return Ok(Some(Stored { bytes, stride }));
+        }
+        let Some(block) = self.block else {
+            return Ok(None);
+        };
+        let bytes = &data.view(block.view)?[block.offset..];
+        let stride = block.stride;
+        Ok(Some(Stored { bytes, stride }))
     }
 
     fn gather<T: Copy + Default + Send + Sync, const N: usize, const SIZE: usize>(
@@ -109,10 +122,9 @@ impl Accessor<'_> {
         decode: impl Fn([u8; SIZE]) -> T + Sync,
     ) -> Result<Vec<[T; N]>, LoadError> {
         self.claim::<T, N>(data, range.len())?;
-        let mut elements = match self.block {
-            Some(block) => {
-                let bytes = &data.view(block.view)?[block.offset..];
-                let element = |index| decode_element(bytes, index * block.stride, &decode);
+        let mut elements = match self.stored(data)? {
+            Some(stored) => {
+                let element = |index| decode_element(stored.bytes, index * stored.stride, &decode);
                 range
                     .clone()
                     .into_par_iter()
@@ -138,7 +150,8 @@ impl Accessor<'_> {
 
     /// Refuse an accessor that promises more zeros than a file of this size may ask for.
     pub fn check_zeros(&self, data: &Data) -> Result<(), LoadError> {
-        if self.block.is_some() || self.count as u64 <= data.zero_limit() {
+        if self.block.is_some() || self.decoded.is_some() || self.count as u64 <= data.zero_limit()
+        {
             return Ok(());
         }
         Err(self.item.fault(format!(
@@ -182,6 +195,13 @@ impl Accessor<'_> {
             self.count
         )))
     }
+}
+
+/// Where elements begin, and the bytes from one to the next.
+#[derive(Clone, Copy)]
+struct Stored<'b> {
+    bytes: &'b [u8],
+    stride: usize,
 }
 
 /// `N` components of `SIZE` bytes from byte `at` on, which the accessor's checks have proved to be there.

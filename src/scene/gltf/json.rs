@@ -193,6 +193,18 @@ impl<'a> Item<'a> {
         Ok(Some(floats))
     }
 
+    /// Any number of finite numbers under `key`, if present.
+    pub fn number_list(&self, key: &str) -> Result<Option<Vec<f64>>, LoadError> {
+        let Some(value) = self.value(key) else {
+            return Ok(None);
+        };
+        let number = |value: &Value| value.as_f64().filter(|number| number.is_finite());
+        let numbers = self.array(key)?.iter().map(number).collect::<Option<_>>();
+        numbers
+            .map(Some)
+            .ok_or_else(|| self.mismatch(key, "an array of finite numbers", value))
+    }
+
     fn narrow(&self, key: &str, number: f64) -> Result<f32, LoadError> {
         let float = number as f32;
         let problem = || format!("`{key}` is {number:e}, beyond the largest 32-bit float");

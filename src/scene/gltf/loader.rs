@@ -11,10 +11,14 @@ use super::files::Files;
 use super::json::Item;
 use super::lenient::Lenient;
 use super::material::{self, RawMaterial};
+use super::meshes::Stand;
 use super::node::{Nodes, Placed};
 use super::primitive::Source;
 use super::texture::{self, Textures};
-use super::{LoadOptions, accessor, camera, extensions, framing, image_light, light, meshes, pose};
+use super::{
+    LoadOptions, accessor, animation, camera, extensions, framing, image_light, light, meshes,
+    variants,
+};
 use crate::host::stages::stage;
 use crate::scene::{Scene, TextureSlot};
 
@@ -35,15 +39,30 @@ pub(super) fn load(
     scene.extensions = extensions::check(&root, json, options.lenient, &mut scene.warnings)?;
     let nodes = Nodes::read(&root)?;
     let roots = choose_scene(&root, &nodes, options, &mut scene)?;
-    let placed = nodes.place(&roots, &mut scene.warnings)?;
-    pose::warn_of_animations(&root, &mut scene.warnings)?;
-    place_cameras_and_lights(&root, &nodes, &placed, &mut scene)?;
-
     let mut files = Files::new(bytes);
     let lenient = Lenient(options.lenient);
-    load_content(
-        &root, &nodes, &placed, &mut files, binary, lenient, &mut scene,
-    )?;
+    let data = stage("buffers", || Data::load(&root, &mut files, binary))?;
+    let accessors = accessor::read_all(&root, &data)?;
+    let mut materials = material::read_all(&root, lenient, &mut scene.warnings)?;
+    materials.push(default_material());
+    let variant = variants::choose(&root, options, &mut scene)?;
+    let source = Source {
+        data: &data,
+        accessors: &accessors,
+        materials: &materials,
+        variant,
+        variants: scene.variant_names.len(),
+    };
+    let pose = animation::pose(&root, &nodes, source, options, &mut scene)?;
+    let placed = nodes.place(&roots, &pose, &mut scene.warnings)?;
+    place_cameras_and_lights(&root, &nodes, &placed, &mut scene)?;
+    let stand = Stand {
+        nodes: &nodes,
+        pose: &pose,
+        placed: &placed,
+    };
+    stage("meshes", || meshes::load(&root, stand, source, &mut scene))?;
+    load_textures(&root, &data, materials, &mut files, lenient, &mut scene)?;
     scene.hash = files.hash();
     if scene.cameras.is_empty() {
         scene.cameras.push(framing::camera(&scene));
@@ -55,36 +74,23 @@ pub(super) fn load(
     Ok(scene)
 }
 
-/// Load what the placed nodes show: meshes, materials, textures.
-fn load_content(
+/// Load the textures that the meshes' materials read, and finish the materials.
+fn load_textures(
     root: &Item,
-    nodes: &Nodes,
-    placed: &[Placed],
+    data: &Data,
+    materials: Vec<RawMaterial>,
     files: &mut Files,
-    binary: Option<&[u8]>,
     lenient: Lenient,
     scene: &mut Scene,
 ) -> Result<(), LoadError> {
-    let data = stage("buffers", || Data::load(root, files, binary))?;
-    let accessors = accessor::read_all(root, &data)?;
-    let mut materials = material::read_all(root, lenient, &mut scene.warnings)?;
-    materials.push(default_material());
-    let source = Source {
-        data: &data,
-        accessors: &accessors,
-        materials: &materials,
-    };
-    stage("meshes", || {
-        meshes::load(root, nodes, placed, source, scene)
-    })?;
     let used: BTreeSet<usize> = scene.meshes.iter().map(|mesh| mesh.material).collect();
     let used_materials = used.iter().map(|&index| &materials[index]);
     let textures = stage("images", || {
         let warnings = &mut scene.warnings;
-        texture::load(root, &data, files, used_materials, lenient, warnings)
+        texture::load(root, data, files, used_materials, lenient, warnings)
     })?;
     stage("images", || {
-        image_light::load(root, &data, files, lenient, scene)
+        image_light::load(root, data, files, lenient, scene)
     })?;
     fill_materials(scene, materials, &used, &textures);
     scene.textures = textures.textures;
@@ -146,13 +152,18 @@ fn place_cameras_and_lights(
 ) -> Result<(), LoadError> {
     let cameras = camera::read_all(root)?;
     let lights = light::read_all(root, &mut scene.warnings)?;
-    for Placed { node, to_world } in placed {
+    for Placed {
+        node,
+        to_world,
+        visible,
+    } in placed
+    {
         let item = nodes.item(*node);
         if let Some(index) = item.index("camera", "camera", cameras.len())? {
             let camera = camera::place(&cameras[index], item, to_world);
             scene.cameras.push(camera);
         }
-        if let Some(index) = light::of_node(item, lights.len())? {
+        if let Some(index) = light::of_node(item, lights.len())?.filter(|_| *visible) {
             scene
                 .lights
                 .push(light::place(&lights[index], item, to_world));

@@ -4,11 +4,13 @@
 //! allocation is larger than a fixed multiple of the bytes that are really there.
 
 mod accessor;
+mod animation;
 mod attributes;
 mod buffer;
 mod camera;
 mod container;
 mod cube;
+mod draco;
 mod elements;
 mod error;
 mod extensions;
@@ -16,6 +18,7 @@ mod files;
 mod framing;
 mod image;
 mod image_light;
+mod instancing;
 mod json;
 mod lenient;
 mod light;
@@ -23,9 +26,13 @@ mod loader;
 mod material;
 mod material_extensions;
 mod meshes;
+mod meshopt;
+mod morph;
 mod node;
 mod pose;
 mod primitive;
+mod sampler;
+mod skin;
 mod tangent_faces;
 mod tangents;
 mod texture;
@@ -34,6 +41,7 @@ mod texture_sampler;
 mod topology;
 mod transform;
 mod uri;
+mod variants;
 mod vertices;
 
 pub use error::LoadError;
@@ -46,13 +54,20 @@ use super::selector::Selector;
 use crate::host::stages::stage;
 
 /// What to load from a file.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct LoadOptions {
     /// Which of the file's scenes; else the file's default, else the first.
     pub scene: Option<Selector>,
+    /// Which variant of the materials (KHR_materials_variants); else what the file shows without one.
+    pub variant: Option<Selector>,
     /// Show a texture or a material that is wrong in the file in magenta, with a warning, instead of
     /// refusing the file.
     pub lenient: bool,
+    /// Which animation poses the nodes; none, unless there is a moment: then the first one does.
+    pub animation: Option<Selector>,
+    /// The moment of the animation, seconds from its beginning, finite; before the first and after the last key
+    /// these hold. None: 0.
+    pub at: Option<f64>,
 }
 
 /// Load a scene from a .gltf or .glb file; its content decides which it is.

@@ -4,6 +4,7 @@ use glam::DMat4;
 
 use super::error::LoadError;
 use super::json::Item;
+use super::pose::Pose;
 use super::transform;
 
 /// The nodes of the file: each has at most one parent, and no cycle exists.
@@ -21,6 +22,8 @@ pub(super) struct Placed {
     pub node: usize,
     /// The node's space to world space; finite.
     pub to_world: DMat4,
+    /// Whether it and all nodes above it are shown (KHR_node_visibility); cameras do not mind.
+    pub visible: bool,
 }
 
 impl<'a> Nodes<'a> {
@@ -80,33 +83,52 @@ impl<'a> Nodes<'a> {
         self.items.len()
     }
 
-    /// All nodes below and including `roots`, parents before children, in the order of the file.
+    /// All nodes below and including `roots` in a pose, parents before children, in the order of the file.
     pub fn place(
         &self,
         roots: &[usize],
+        pose: &Pose,
         warnings: &mut Vec<String>,
     ) -> Result<Vec<Placed>, LoadError> {
         let mut placed = Vec::new();
         let mut seen = vec![false; self.items.len()];
-        let mut open: Vec<(usize, DMat4)> = Vec::new();
-        open.extend(roots.iter().rev().map(|&node| (node, DMat4::IDENTITY)));
-        while let Some((node, parent)) = open.pop() {
+        let mut open: Vec<(usize, DMat4, bool)> = Vec::new();
+        open.extend(
+            roots
+                .iter()
+                .rev()
+                .map(|&node| (node, DMat4::IDENTITY, true)),
+        );
+        while let Some((node, parent, shown)) = open.pop() {
             let item = &self.items[node];
             if std::mem::replace(&mut seen[node], true) {
                 return Err(item.fault(
                     "the scene lists it although it is listed already or has a parent; expected root nodes, each once",
                 ));
             }
-            let to_world = parent * transform::local(item, warnings)?;
+            let to_world = parent * transform::local(item, pose.get(&node), warnings)?;
             if !to_world.is_finite() {
                 return Err(
                     item.fault("its transform is not finite once composed with its parents'")
                 );
             }
             let children = self.children[node].iter().rev();
-            open.extend(children.map(|&child| (child, to_world)));
-            placed.push(Placed { node, to_world });
+            let visible = shown && is_visible(item)?;
+            open.extend(children.map(|&child| (child, to_world, visible)));
+            placed.push(Placed {
+                node,
+                to_world,
+                visible,
+            });
         }
         Ok(placed)
     }
+}
+
+/// A node's own visibility.
+fn is_visible(item: &Item) -> Result<bool, LoadError> {
+    let Some(extension) = item.extension("KHR_node_visibility")? else {
+        return Ok(true);
+    };
+    Ok(extension.value("visible").is_none() || extension.flag("visible")?)
 }

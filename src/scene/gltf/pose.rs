@@ -1,102 +1,57 @@
-//! Skins, morph targets and animations: shown in their rest pose.
+//! Poses: what an animation changes of the nodes, and how the meshes that they show are deformed.
 
-use glam::DMat4;
+use std::collections::BTreeMap;
 
-use super::accessor::Shape;
+use glam::{DQuat, DVec3};
+
 use super::error::LoadError;
-use super::json::{Item, counted};
-use super::node::{Nodes, Placed};
-use super::primitive::Source;
+use super::json::Item;
+use super::skin::SkinPose;
 
-/// The skins of the file.
-#[derive(Debug)]
-pub(super) struct Skins {
-    /// Where the bind pose of each skin lies in the world; none if its joints are not in the scene.
-    to_world: Vec<Option<DMat4>>,
+/// What an animation sets of a node; all else is the node's own.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct NodePose {
+    pub translation: Option<DVec3>,
+    pub rotation: Option<DQuat>,
+    pub scale: Option<DVec3>,
+    pub weights: Option<Vec<f64>>,
 }
 
-impl Skins {
-    /// Read all skins.
-    pub fn read(
-        root: &Item,
-        nodes: &Nodes,
-        placed: &[Placed],
-        source: Source,
-    ) -> Result<Self, LoadError> {
-        let items = root.items("skins", "skin")?;
-        let mut joints_to_world = vec![None; nodes.len()];
-        for Placed { node, to_world } in placed {
-            joints_to_world[*node] = Some(*to_world);
-        }
-        let mut to_world = Vec::with_capacity(items.len());
-        for item in &items {
-            let joints = item.indices("joints", "node", nodes.len())?;
-            let first = joints.first();
-            let first = first.ok_or_else(|| item.fault("`joints` is missing or empty"))?;
-            let bind = first_bind_matrix(item, source)?;
-            let joint = joints_to_world[*first];
-            let matrix = joint.map(|joint| joint * bind);
-            to_world.push(matrix.filter(|matrix| matrix.is_finite()));
-        }
-        Ok(Self { to_world })
-    }
-
-    /// Where the mesh of a node is shown. A skinned mesh follows its joints and not its node
-    /// (glTF 2.0, section 3.7.3.3): its bind pose is placed by its first joint.
-    pub fn rest_pose(
-        &self,
-        item: &Item,
-        placed: &Placed,
-        warnings: &mut Vec<String>,
-    ) -> Result<DMat4, LoadError> {
-        let Some(skin) = item.index("skin", "skin", self.to_world.len())? else {
-            return Ok(placed.to_world);
-        };
-        warnings.push(format!(
-            "{}: its skin is not posed; it is rendered in its rest pose",
-            item.label()
-        ));
-        Ok(self.to_world[skin].unwrap_or(placed.to_world))
+impl NodePose {
+    /// Whether it moves the node.
+    pub fn moves(&self) -> bool {
+        self.translation.is_some() || self.rotation.is_some() || self.scale.is_some()
     }
 }
 
-/// World space of the bind pose to the first joint's space; identity if the file gives none.
-fn first_bind_matrix(item: &Item, source: Source) -> Result<DMat4, LoadError> {
-    let accessors = source.accessors;
-    let Some(index) = item.index("inverseBindMatrices", "accessor", accessors.len())? else {
-        return Ok(DMat4::IDENTITY);
+/// The nodes that an animation changes, by their index.
+pub(super) type Pose = BTreeMap<usize, NodePose>;
+
+/// How the vertices of a mesh are displaced.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Deformation<'a> {
+    /// Weight of each morph target; empty: all are zero.
+    pub weights: &'a [f64],
+    pub skin: Option<&'a SkinPose>,
+}
+
+/// The weights of a mesh's morph targets as a node shows it: the animation's, else the node's, else the mesh's.
+/// Empty if all are zero.
+pub(super) fn weights(
+    node: &Item,
+    pose: Option<&NodePose>,
+    mesh: &Item,
+) -> Result<Vec<f64>, LoadError> {
+    let animated = pose.and_then(|pose| pose.weights.clone());
+    let weights = match animated {
+        Some(weights) => weights,
+        None => match node.number_list("weights")? {
+            Some(weights) => weights,
+            None => mesh.number_list("weights")?.unwrap_or_default(),
+        },
     };
-    accessors[index].expect_shape("inverseBindMatrices", &[Shape::Mat4])?;
-    let matrices = accessors[index].floats::<16>(source.data, 0..1)?;
-    let columns = matrices[0].map(f64::from);
-    Ok(DMat4::from_cols_array(&columns))
-}
-
-/// Say that morph targets are not applied.
-pub(super) fn warn_of_morphs(mesh: &Item, warnings: &mut Vec<String>) -> Result<(), LoadError> {
-    for primitive in mesh.items("primitives", "primitive")? {
-        if !primitive.array("targets")?.is_empty() {
-            warnings.push(format!(
-                "{}: its morph targets are not applied; it is rendered in its rest pose",
-                mesh.label()
-            ));
-            break;
-        }
+    match weights.iter().any(|&weight| weight != 0.0) {
+        true => Ok(weights),
+        false => Ok(Vec::new()),
     }
-    Ok(())
-}
-
-/// Say that animations are not played.
-pub(super) fn warn_of_animations(root: &Item, warnings: &mut Vec<String>) -> Result<(), LoadError> {
-    let animations = root.array("animations")?.len();
-    if animations > 0 {
-        warnings.push(format!(
-            "{} not played; the scene is rendered in its rest pose",
-            match animations {
-                1 => "its animation is".to_owned(),
-                _ => format!("its {} are", counted(animations, "animation")),
-            }
-        ));
-    }
-    Ok(())
 }

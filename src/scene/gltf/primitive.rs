@@ -8,12 +8,17 @@ use serde_json::Value;
 use super::accessor::{Accessor, Shape};
 use super::attributes;
 use super::buffer::Data;
+use super::draco;
 use super::elements::PARALLEL;
 use super::error::LoadError;
 use super::json::{Item, counted};
 use super::material::RawMaterial;
+use super::morph;
+use super::pose::Deformation;
+use super::skin::{self, SkinPose};
 use super::tangents;
 use super::topology::Topology;
+use super::variants;
 use super::vertices;
 use crate::scene::Mesh;
 
@@ -24,6 +29,9 @@ pub(super) struct Source<'a> {
     pub accessors: &'a [Accessor<'a>],
     /// The file's materials, then the default one.
     pub materials: &'a [RawMaterial],
+    /// The variant that is shown, and how many there are.
+    pub variant: Option<usize>,
+    pub variants: usize,
 }
 
 /// A triangle mesh, if the primitive makes one, and what there is to say about it.
@@ -41,22 +49,42 @@ pub(super) struct Primitive<'a> {
     pub warnings: Vec<String>,
     /// Whether the material is looked up in tangent space and the vertices have coordinates for that.
     pub needs_tangents: bool,
+    /// Number of vertices that the attributes have.
+    pub vertices: usize,
+    /// The morph targets that have a weight.
+    pub targets: Vec<(f64, Item<'a>)>,
+    pub skin: Option<&'a SkinPose>,
     attributes: Option<Item<'a>>,
+    decoded: &'a draco::Decoded<'a>,
 }
 
-/// Read a primitive of the mesh called `name`.
-pub(super) fn load(item: &Item, name: &str, source: Source) -> Result<Loaded, LoadError> {
+/// Read a primitive of the mesh called `name` as its vertices are displaced.
+pub(super) fn load(
+    item: &Item,
+    name: &str,
+    deformation: Deformation,
+    source: Source,
+) -> Result<Loaded, LoadError> {
     let file_materials = source.materials.len() - 1;
-    let material = item.index("material", "material", file_materials)?;
+    let usual = item.index("material", "material", file_materials)?;
+    let of_variant = variants::material(item, source.variant, source.variants, file_materials)?;
+    let material = of_variant.or(usual);
+    let mut decoded = draco::decode(item, source)?;
+    let triangles = decoded.triangles.take();
     let mut primitive = Primitive {
         item,
         source,
         material: material.unwrap_or(file_materials),
         warnings: Vec::new(),
         needs_tangents: false,
+        vertices: 0,
+        targets: morph::weighted(item, deformation.weights)?,
+        skin: deformation.skin,
         attributes: item.object("attributes", "attributes")?,
+        decoded: &decoded,
     };
-    let mut mesh = primitive.read()?;
+    primitive.warnings.extend(decoded.warnings.iter().cloned());
+    let mut mesh = primitive.read(triangles)?;
     if let Some(mesh) = &mut mesh {
         mesh.name = name.to_owned();
         mesh.material = primitive.material;
@@ -68,7 +96,8 @@ pub(super) fn load(item: &Item, name: &str, source: Source) -> Result<Loaded, Lo
 }
 
 impl<'a> Primitive<'a> {
-    fn read(&mut self) -> Result<Option<Mesh>, LoadError> {
+    /// `decoded`: the triangles, where an extension holds them.
+    fn read(&mut self, decoded: Option<Vec<[u32; 3]>>) -> Result<Option<Mesh>, LoadError> {
         let Some(topology) = self.topology()? else {
             return Ok(None);
         };
@@ -78,9 +107,12 @@ impl<'a> Primitive<'a> {
         };
         positions.expect_shape("POSITION", &[Shape::Vec3])?;
         positions.check_zeros(self.source.data)?;
-        self.refuse_draco(positions)?;
+        self.vertices = positions.count;
         self.check_counts(positions.count)?;
-        let mut indices = self.triangles(topology, positions.count)?;
+        let mut indices = match decoded {
+            Some(triangles) => triangles,
+            None => self.triangles(topology, positions.count)?,
+        };
         if indices.is_empty() {
             self.warn("it has no triangle; it is skipped");
             return Ok(None);
@@ -91,7 +123,8 @@ impl<'a> Primitive<'a> {
             ..Mesh::default()
         };
         self.needs_tangents = self.raw_material().tangent_set().is_some();
-        attributes::read(self, &mut mesh, window)?;
+        attributes::read(self, &mut mesh, &window)?;
+        skin::apply(self, &mut mesh, &window)?;
         vertices::drop_unused(&mut mesh);
         if self.needs_tangents && mesh.tangents.is_empty() {
             self.make_tangents(&mut mesh)?;
@@ -106,6 +139,9 @@ impl<'a> Primitive<'a> {
 
     /// The accessor behind an attribute, if present.
     pub fn attribute(&self, name: &str) -> Result<Option<&'a Accessor<'a>>, LoadError> {
+        if let Some(accessor) = self.decoded.attribute(name) {
+            return Ok(Some(accessor));
+        }
         let Some(attributes) = &self.attributes else {
             return Ok(None);
         };
@@ -117,17 +153,6 @@ impl<'a> Primitive<'a> {
     pub fn warn(&mut self, sentence: &str) {
         self.warnings
             .push(format!("{}: {sentence}", self.item.label()));
-    }
-
-    /// Without the uncompressed copy that glTF allows beside Draco's, all vertices would be zero.
-    fn refuse_draco(&self, positions: &Accessor) -> Result<(), LoadError> {
-        let compressed = self.item.extension("KHR_draco_mesh_compression")?;
-        match compressed.filter(|_| positions.block.is_none()) {
-            None => Ok(()),
-            Some(item) => Err(item.fault(
-                "its vertices are compressed, which is not supported; export the scene without it",
-            )),
-        }
     }
 
     /// How corners make triangles; none for points and lines.

@@ -4,23 +4,59 @@ use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 
 use super::error::LoadError;
 use super::json::Item;
+use super::pose::NodePose;
 
 /// The node's own space to its parent's.
-pub(super) fn local(item: &Item, warnings: &mut Vec<String>) -> Result<DMat4, LoadError> {
-    if let Some(columns) = item.numbers::<16>("matrix")? {
-        return Ok(affine(item, DMat4::from_cols_array(&columns), warnings));
+pub(super) fn local(
+    item: &Item,
+    pose: Option<&NodePose>,
+    warnings: &mut Vec<String>,
+) -> Result<DMat4, LoadError> {
+    let pose = pose.filter(|pose| pose.moves());
+    let (mut scale, mut rotation, mut translation) = match item.numbers::<16>("matrix")? {
+        Some(columns) => {
+            let matrix = affine(item, DMat4::from_cols_array(&columns), warnings);
+            if pose.is_none() {
+                return Ok(matrix);
+            }
+            decomposed(item, &matrix, warnings)
+        }
+        None => parts(item, warnings)?,
+    };
+    if let Some(pose) = pose {
+        scale = pose.scale.unwrap_or(scale);
+        rotation = pose.rotation.unwrap_or(rotation);
+        translation = pose.translation.unwrap_or(translation);
     }
+    Ok(DMat4::from_scale_rotation_translation(
+        scale,
+        rotation,
+        translation,
+    ))
+}
+
+fn parts(item: &Item, warnings: &mut Vec<String>) -> Result<(DVec3, DQuat, DVec3), LoadError> {
     let translation = item.numbers::<3>("translation")?.unwrap_or([0.0; 3]);
     let scale = item.numbers::<3>("scale")?.unwrap_or([1.0; 3]);
     let rotation = match item.numbers::<4>("rotation")? {
         Some(quaternion) => unit_quaternion(item, DVec4::from_array(quaternion), warnings),
         None => DQuat::IDENTITY,
     };
-    Ok(DMat4::from_scale_rotation_translation(
-        DVec3::from_array(scale),
-        rotation,
-        DVec3::from_array(translation),
-    ))
+    Ok((scale.into(), rotation, translation.into()))
+}
+
+/// An animated node should have no matrix (glTF 2.0, section 3.5.3): what it does not animate is taken from it.
+fn decomposed(item: &Item, matrix: &DMat4, warnings: &mut Vec<String>) -> (DVec3, DQuat, DVec3) {
+    let parts = matrix.to_scale_rotation_translation();
+    let (scale, rotation, translation) = parts;
+    if matrix.determinant() == 0.0 || !(scale.is_finite() && rotation.is_finite()) {
+        warnings.push(format!(
+            "{}: it is animated, and its `matrix` has no scale and rotation; none are used",
+            item.label()
+        ));
+        return (DVec3::ONE, DQuat::IDENTITY, translation);
+    }
+    parts
 }
 
 /// glTF allows only affine matrices.
