@@ -7,7 +7,6 @@ use std::panic::PanicHookInfo;
 
 use anyhow::Context;
 
-use crate::host::panics;
 use crate::render::RenderError;
 use crate::shader::ShaderError;
 
@@ -70,9 +69,6 @@ fn shader_report(error: &ShaderError) -> String {
 
 /// The panic hook: one line instead of a backtrace.
 pub fn internal_error(info: &PanicHookInfo<'_>) {
-    if panics::contained() {
-        return;
-    }
     let place = info.location().map(|l| format!(" at {l}"));
     let payload = info.payload();
     let text = payload.downcast_ref::<&str>().copied();

@@ -1,8 +1,8 @@
-//! What all layers ask of the machine they run on: a place to keep results between runs,
-//! a stopwatch, and that a panic stays where it happens.
+//! What all layers ask of the machine they run on: a place to keep results between runs, a
+//! stopwatch, and a net under code that may panic.
 
 pub mod cache;
-pub mod panics;
+pub mod guard;
 pub mod stages;
 
 pub use cache::Cache;

@@ -10,7 +10,7 @@ use super::accessor::{Accessor, Component};
 use super::error::LoadError;
 use super::json::{Item, counted, shorten};
 use super::primitive::Source;
-use crate::host::panics;
+use crate::host::guard;
 
 /// Points and faces that a stream may have beyond [`EXPANSION`] times its bytes.
 const SMALLEST_LIMIT: u64 = 1 << 16;
@@ -86,7 +86,7 @@ fn decode_stream(extension: &Item, bytes: &[u8], source: Source) -> Result<Geome
         .with_max_decoded_bytes(source.data.budget_left());
     let mut geometry = Geometry::new();
     // The decoder is made for untrusted bytes; should it panic on some all the same, that is one file's error.
-    let result = panics::contain(|| {
+    let result = guard::catch(|| {
         let mut buffer = DecoderBuffer::new(bytes).with_limits(limits);
         let result = MeshDecoder::new().decode(&mut buffer, &mut geometry);
         result.map_err(|error| shorten(&error.to_string().replace('\n', " ")))
