@@ -2,7 +2,7 @@
 
 mod cli_support;
 
-use cli_support::{etendue, folder, path_in};
+use cli_support::{etendue, folder, moving, path_in};
 
 #[test]
 fn info_shows_a_scene_as_text_and_as_json() {
@@ -69,29 +69,6 @@ fn info_needs_no_device() {
 fn info_refuses_what_cannot_be_read() {
     etendue(&["info", "no/such/scene.gltf"]).refused(&["no/such/scene.gltf"]);
     etendue(&["info", "scenes/furnace.gltf", "--scene", "9"]).refused(&["no scene 9"]);
-}
-
-/// A file with a mesh that an animation moves from x = 0 to x = 8 in two seconds.
-fn moving(folder: &tempfile::TempDir) -> String {
-    let floats = [
-        0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, // the triangle
-        0.0, 2.0, // times
-        0.0, 0.0, 0.0, 8.0, 0.0, 0.0, // places
-    ];
-    let bytes: Vec<u8> = floats.iter().flat_map(|x| x.to_le_bytes()).collect();
-    std::fs::write(folder.path().join("a.bin"), bytes).expect("a file");
-    let scene = path_in(folder, "a.gltf");
-    let text = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],
-        "buffers":[{"uri":"a.bin","byteLength":68}],"bufferViews":[{"buffer":0,"byteLength":68}],
-        "accessors":[
-            {"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
-            {"bufferView":0,"byteOffset":36,"componentType":5126,"type":"SCALAR","count":2},
-            {"bufferView":0,"byteOffset":44,"componentType":5126,"type":"VEC3","count":2}],
-        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-        "animations":[{"name":"slide","samplers":[{"input":1,"output":2}],
-            "channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}]}"#;
-    std::fs::write(&scene, text).expect("a file");
-    scene
 }
 
 #[test]

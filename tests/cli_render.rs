@@ -254,6 +254,32 @@ fn the_spirv_is_written_and_nothing_is_rendered() {
 }
 
 #[test]
+fn the_moment_of_an_animation_is_told_with_the_picture() {
+    let folder = folder();
+    let scene = cli_support::moving(&folder);
+    let path = path_in(&folder, "a.exr");
+    let arguments = [
+        "--at",
+        "0.5",
+        "--integrator",
+        "albedo",
+        "-o",
+        &path,
+        "--json",
+        "-",
+    ];
+    let report = render_scene(&scene, &arguments).ends_with(0).json();
+    assert_eq!(report["animation"], "0 \"slide\" at 0.5 s");
+    let (_, metadata) = exr::read(Path::new(&path)).expect("a readable EXR");
+    assert_eq!(metadata.0["etendue.animation"], "0 \"slide\" at 0.5 s");
+    let report = render_scene(
+        &scene,
+        &["-q", "--integrator", "albedo", "-o", &path, "--json", "-"],
+    );
+    assert!(report.ends_with(0).json()["animation"].is_null());
+}
+
+#[test]
 fn the_same_command_gives_the_same_bits() {
     let folder = folder();
     let pixels = |name: &str, seed: &str, checked: bool| {

@@ -127,13 +127,12 @@ fn mutate(seed: &Seed, random: &mut Random) -> Vec<u8> {
 }
 
 /// A moment within the seeds' animations.
-const POSED: LoadOptions = LoadOptions {
-    lenient: false,
-    variant: None,
-    scene: None,
-    animation: None,
-    at: Some(0.4),
-};
+fn posed() -> LoadOptions {
+    LoadOptions {
+        at: Some(0.4),
+        ..LoadOptions::default()
+    }
+}
 
 /// Load, and use the scene as the program does; the sentence if it is refused.
 fn try_load(folder: &Path, bytes: &[u8]) -> Result<(), String> {
@@ -150,7 +149,7 @@ fn try_load(folder: &Path, bytes: &[u8]) -> Result<(), String> {
             if scene.animation_names.is_empty() {
                 return Ok(());
             }
-            let posed = load_slice(&folder.join("mutant.gltf"), bytes, &POSED);
+            let posed = load_slice(&folder.join("mutant.gltf"), bytes, &posed());
             let posed = posed.map_err(|error| error.to_string())?;
             posed.validate().expect("a loaded scene is valid");
             Ok(())

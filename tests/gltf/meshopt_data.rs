@@ -169,6 +169,28 @@ fn wrong_descriptions_are_refused() {
     );
 }
 
+/// The end of a stream is found from its length: a byte more or less is noticed.
+#[test]
+fn streams_of_another_length_are_refused() {
+    for (extension, version) in [
+        ("EXT_meshopt_compression", 0),
+        ("KHR_meshopt_compression", 1),
+    ] {
+        for view in 0..3 {
+            for step in [-1, 1] {
+                let mut builder = square(extension, version);
+                // The stream that follows, or these bytes, are behind it.
+                builder.bin.extend([0; 4]);
+                let length =
+                    &mut builder.json["bufferViews"][view]["extensions"][extension]["byteLength"];
+                *length = json!(length.as_i64().unwrap_or(0) + step);
+                let here = format!("buffer view {view}, {extension}: its data is malformed (");
+                refused(builder, &[&here, "export or copy the file again"]);
+            }
+        }
+    }
+}
+
 /// Every byte of every stream with every bit flipped: a scene or a sentence.
 #[test]
 fn changed_streams_give_a_scene_or_a_sentence() {

@@ -8,10 +8,10 @@ use super::LoadOptions;
 use super::accessor::Shape;
 use super::error::LoadError;
 use super::json::{Item, counted};
+use super::keyframes::Sampler;
 use super::node::Nodes;
 use super::pose::Pose;
 use super::primitive::Source;
-use super::sampler::Sampler;
 use crate::scene::selector::Selector;
 use crate::scene::{PlayedAnimation, Scene};
 

@@ -79,6 +79,7 @@ pub(super) fn decode<'a>(item: &Item<'a>, source: Source<'a>) -> Result<Decoded<
 /// that are there, and what they take is charged to the scene.
 fn decode_stream(extension: &Item, bytes: &[u8], source: Source) -> Result<Geometry, LoadError> {
     let most = SMALLEST_LIMIT.max(EXPANSION * bytes.len() as u64);
+    let most = most.min(u32::MAX.into());
     let limits = DecodeLimits::default()
         .with_max_points(most)
         .with_max_faces(most)
@@ -192,6 +193,9 @@ fn elements(
     }
     let kind = stored.data_type();
     let width = kind.byte_length();
+    if width == 0 {
+        return Err(format!("numbers of type {kind:?} are not read"));
+    }
     let stride = usize::try_from(stored.byte_stride()).unwrap_or(0);
     let same = component_of(kind) == Some(described.component);
     let mut bytes = Vec::with_capacity(points * components * described.component.size());
@@ -206,7 +210,7 @@ fn elements(
         match same {
             true => bytes.extend_from_slice(element),
             false => element
-                .chunks_exact(width.max(1))
+                .chunks_exact(width)
                 .try_for_each(|number| convert(number, kind, described.component, &mut bytes))?,
         }
     }

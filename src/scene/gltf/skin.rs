@@ -126,6 +126,12 @@ pub(super) fn apply(
         primitive.warn("it has no JOINTS_0 and WEIGHTS_0; it follows the skin's first joint");
     }
     check_joints(primitive, &sets, skin.matrices.len())?;
+    let bytes = mesh.positions.len() as u64 * size_of::<DMat4>() as u64;
+    if !primitive.source.data.charge(bytes) {
+        return Err(primitive
+            .item
+            .fault("there is no memory left to pose its vertices"));
+    }
     let vertices = (0..mesh.positions.len()).into_par_iter();
     let blended = |vertex: usize| blend(&sets, vertex, &skin.matrices);
     let matrices: Vec<DMat4> = vertices.with_min_len(PARALLEL).map(blended).collect();
