@@ -151,7 +151,8 @@ fn surface_hit_weight(s: Surface, last: LastBounce) -> f32 {
     }
     let distance = stable_length(s.position - last.position);
     let cos_light = abs(dot(s.wo, s.normal));
-    let pdf = lights[s.light].probability * light_triangle_pdf(distance, cos_light, s.area);
+    let chosen = light_probability(s.light, last.position, last.normal);
+    let pdf = chosen * light_triangle_pdf(distance, cos_light, s.area);
     return power_heuristic(last.pdf, pdf);
 }
 

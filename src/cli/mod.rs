@@ -11,6 +11,7 @@ mod exit;
 mod info;
 mod info_text;
 mod interrupt;
+mod lights_report;
 mod message;
 mod metadata;
 mod outputs;

@@ -23,7 +23,7 @@ pub fn base_frame(scene: &Scene, prepared: &Prepared, settings: &Settings) -> Fr
         half_extent,
         max_depth: settings.max_depth,
         seed: settings.seed,
-        light_count: prepared.lights.len() as u32,
+        light_count: prepared.lights.table.len() as u32,
         environment_light: prepared.environment_light,
         environment_width: image.map_or(0, |i| i.width as u32),
         environment_height: image.map_or(0, |i| i.height as u32),

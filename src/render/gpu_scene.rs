@@ -74,7 +74,7 @@ fn fixed_buffers(device: &Device, scene: &Prepared) -> Result<Vec<(u32, Buffer)>
     Ok(vec![
         (4, device.buffer_with("materials", &scene.materials)?),
         (5, device.buffer_with("textures", &scene.textures.textures)?),
-        (6, device.buffer_with("lights", &scene.lights)?),
+        (6, device.buffer_with("lights", &scene.lights.table)?),
         (7, device.buffer_with("punctual lights", &scene.punctual)?),
         (8, device.buffer_with("sRGB table", &srgb_table())?),
     ])
@@ -98,5 +98,6 @@ fn paged_buffers(device: &Device, scene: &Prepared) -> Result<Vec<PagedBuffer>, 
         words(device, 3, &scene.textures.words)?,
         PagedBuffer::upload(device, 4, &environment.texels)?,
         words(device, 5, &environment.cdf)?,
+        PagedBuffer::upload(device, 6, scene.lights.nodes())?,
     ])
 }

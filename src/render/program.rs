@@ -149,13 +149,24 @@ pub fn constants(
     list.extend([
         (
             "HAS_LIGHT_TRIANGLES",
-            Constant::Bool(scene.has_light_triangles),
+            Constant::Bool(scene.lights.has_triangles()),
         ),
         (
             "HAS_PUNCTUAL_LIGHTS",
-            Constant::Bool(scene.lights.iter().any(super::lights::is_punctual)),
+            Constant::Bool(scene.lights.has_punctual()),
         ),
-        ("HAS_SEVERAL_LIGHTS", Constant::Bool(scene.lights.len() > 1)),
+        (
+            "HAS_SEVERAL_LIGHTS",
+            Constant::Bool(scene.lights.table.len() > 1),
+        ),
+        (
+            "HAS_LIGHT_TREE",
+            Constant::Bool(scene.lights.tree.is_some()),
+        ),
+        (
+            "HAS_LIGHTS_OUTSIDE_TREE",
+            Constant::Bool(scene.lights.outside_tree > 0),
+        ),
         (
             "HAS_ENVIRONMENT",
             Constant::Bool(scene.environment_light != super::layout::NONE),

@@ -13,6 +13,7 @@ mod depth;
 mod emission;
 mod furnace;
 mod lights;
+mod many_lights;
 mod polygons;
 mod scale;
 mod sky;
