@@ -1,6 +1,6 @@
 // Buffers of fixed size. The large ones, which may be split over pages, are in the generated
 // buffers.wgsl and read through load_element, load_index, load_vertex_word,
-// load_texel_word, load_environment_texel and load_environment_cdf.
+// load_texel_word, load_environment_texel, load_environment_cdf and load_light_node.
 
 #include "types.wgsl"
 #include "features.wgsl"

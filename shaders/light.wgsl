@@ -7,6 +7,7 @@
 #include "light/triangle.wgsl"
 #include "light/punctual.wgsl"
 #include "light/environment.wgsl"
+#include "light/tree.wgsl"
 
 struct LightSample {
     // Unit vector from the shading point to the light.
@@ -34,9 +35,23 @@ fn no_light_sample() -> LightSample {
     return s;
 }
 
-// A sample of the light that arrives at `s`; pdf 0 if there is none.
-fn sample_light(s: Surface, sampler: ptr<function, Sampler>) -> LightSample {
-    let light = lights[choose_light(sampler)];
+// A sample of the light that arrives at `s`, on both sides or on that of its normal; pdf 0 if there is none.
+fn sample_light(s: Surface, both_sides: bool, sampler: ptr<function, Sampler>) -> LightSample {
+    if (HAS_LIGHT_TREE) {
+        let receiver = light_receiver(s.position, select(s.shading.z, vec3f(0.0), both_sides));
+        let choice = choose_light_in_tree(receiver, next_2d_bits(sampler));
+        if (choice.light == NONE) {
+            return no_light_sample();
+        }
+        var light = lights[choice.light];
+        light.probability = choice.probability;
+        return sample_chosen_light(s, light, sampler);
+    }
+    return sample_chosen_light(s, lights[choose_light(sampler)], sampler);
+}
+
+// A sample of a light that was chosen with its probability.
+fn sample_chosen_light(s: Surface, light: Light, sampler: ptr<function, Sampler>) -> LightSample {
     let kind = light.kind_and_index >> LIGHT_KIND_SHIFT;
     let item = light.kind_and_index & LIGHT_INDEX_MASK;
     let u = next_2d_bits(sampler);
@@ -51,6 +66,15 @@ fn sample_light(s: Surface, sampler: ptr<function, Sampler>) -> LightSample {
     sample.pdf *= light.probability;
     sample.weight /= light.probability;
     return sample;
+}
+
+// Probability with which sample_light, at a point, chooses a light that is somewhere. `normal` is the
+// shading normal, or null if light from both sides counts.
+fn light_probability(light: u32, position: vec3f, normal: vec3f) -> f32 {
+    if (HAS_LIGHT_TREE) {
+        return light_tree_probability(light, light_receiver(position, normal));
+    }
+    return lights[light].probability;
 }
 
 // A light, in proportion to its probability. One alone needs no numbers, but keeps their dimension.

@@ -18,6 +18,8 @@ struct LastBounce {
     pdf: f32,
     // No light sample competes: the first edge, or a mirror.
     alone: bool,
+    // Whether light on either side could have been sampled.
+    both_sides: bool,
 }
 
 // A path under way. An integrator that includes this file says which techniques find lights with a
@@ -45,7 +47,7 @@ struct Path {
 
 // A path along a ray from the camera.
 fn path_begin(camera_ray: Ray, sampler: ptr<function, Sampler>) -> Path {
-    let last = LastBounce(vec3f(0.0), vec3f(0.0), 0.0, true);
+    let last = LastBounce(vec3f(0.0), vec3f(0.0), 0.0, true, false);
     return Path(vec3f(0.0), 0u, vec3f(1.0), (*sampler).dimension, camera_ray, last, vec3f(0.0), 0u, camera_ray, frame.media, 0.0);
 }
 
@@ -117,6 +119,7 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
     }
     let wo = to_local(surface.shading, surface.wo);
     let bsdf = bsdf_at(surface, wo, crossing);
+    let both_sides = bsdf_has_smooth_transmission(bsdf);
     if (HAS_LIGHTS && bsdf_has_smooth_part(bsdf)) {
         sample_direct(path, beta, surface, crossing, bsdf, wo, sampler);
     }
@@ -133,7 +136,7 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
         (*path).media = crossing.media;
     }
     (*path).beta = beta * sample.weight * roulette((*path).depth, beta * sample.weight, choice.y);
-    (*path).last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta);
+    (*path).last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta, both_sides);
     (*path).ray = spawn_ray(surface, wi);
 }
 
@@ -172,7 +175,7 @@ fn sample_direct(
     sampler: ptr<function, Sampler>,
 ) {
     let seed = ray_seed(*sampler) ^ 0x5bd1e995u;
-    let light = sample_light(s, sampler);
+    let light = sample_light(s, bsdf_has_smooth_transmission(bsdf), sampler);
     if (!(light.pdf > 0.0) || (!light.delta && !LIGHT_SAMPLES)) {
         return;
     }
@@ -199,7 +202,8 @@ fn surface_hit_weight(s: Surface, last: LastBounce) -> f32 {
     }
     let distance = stable_length(s.position - last.position);
     let cos_light = abs(dot(s.wo, s.normal));
-    let pdf = lights[s.light].probability * light_triangle_pdf(distance, cos_light, s.area);
+    let chosen = light_probability(s.light, last.position, select(last.normal, vec3f(0.0), last.both_sides));
+    let pdf = chosen * light_triangle_pdf(distance, cos_light, s.area);
     return power_heuristic(last.pdf, pdf);
 }
 

@@ -214,15 +214,35 @@ struct Texture {
     flags: u32,
 }
 
-// An entry of the alias table over all lights.
+// A light: an entry of the alias table, or a leaf of the tree of lights.
 struct Light {
     // Keep this entry if the second random number is below, else take `alias`.
     threshold: f32,
+    // Of a leaf the way to it from the root: bit 0 is the first decision, 1 is to the second child.
     alias_index: u32,
-    // Probability that this light is chosen.
+    // Probability that this light is chosen; 0 for a leaf, whose probability depends on the place.
     probability: f32,
     // Kind in the top two bits (LIGHT_*), below them the index of the triangle or punctual light.
     kind_and_index: u32,
+}
+
+// A group of lights in the tree of lights (light/tree.wgsl). Node 0 is the root, siblings lie at 2k and
+// 2k + 1. Node 1, which would be the root's sibling, says what is known of the lights in no tree:
+// `link` and `axis` are the first of them in `lights` and their number, and the tree is chosen if a
+// 32-bit number is below `extent`.
+struct LightNode {
+    // Middle of the box, relative to the camera.
+    center: vec3f,
+    // Half sizes x, y and z in a byte each, times 2^(high byte - 127).
+    extent: u32,
+    // Axis of the cone of the surfaces' normals: on an octahedron, two 16-bit signed fractions.
+    axis: u32,
+    // Cosine of the cone's angle, and of how far beyond it the lights shine.
+    cones: u32,
+    // Share of the whole tree's intensity.
+    intensity: f32,
+    // The first of two children; or, with LIGHT_NODE_LEAF, an index into `lights`.
+    link: u32,
 }
 
 struct PunctualLight {
@@ -273,6 +293,8 @@ const LIGHT_PUNCTUAL: u32 = 1u;
 const LIGHT_ENVIRONMENT: u32 = 2u;
 const LIGHT_KIND_SHIFT: u32 = 30u;
 const LIGHT_INDEX_MASK: u32 = 0x3fffffffu;
+
+const LIGHT_NODE_LEAF: u32 = 0x80000000u;
 
 const PUNCTUAL_POINT: u32 = 0u;
 const PUNCTUAL_SPOT: u32 = 1u;

@@ -6,6 +6,7 @@ mod device_common;
 use device_common::lights::*;
 use device_common::scenes::*;
 use device_common::statistics::*;
+use etendue::render::LightSelection;
 use etendue::scene::{LightKind, PunctualLight, Scene};
 use glam::{DVec3, Vec3};
 
@@ -168,6 +169,12 @@ fn many_lights() -> Scene {
     scene
 }
 
+/// The choice by an alias table.
+fn many_lights_bench() -> Bench {
+    let point = Vec3::new(2.0, 0.0, 0.1);
+    Bench::with_lights(&many_lights(), point, Vec3::Y, Some(LightSelection::Power))
+}
+
 /// Which of the lights a sample belongs to: lamps, points, the environment.
 fn light_of(d: &Drawn) -> usize {
     let [position, infinite, delta] = [d[2], [d[1][3]; 4], [d[2][3]; 4]];
@@ -183,7 +190,7 @@ fn light_of(d: &Drawn) -> usize {
 /// Probability of each light, in the order of `light_of`, from the table on the host.
 fn light_probabilities(bench: &Bench) -> Vec<f64> {
     let mut probabilities = vec![0.0; LAMPS + POINTS + 1];
-    for light in &bench.stage.prepared.lights {
+    for light in &bench.stage.prepared.lights.table {
         let item = (light.kind_and_index & 0x3fff_ffff) as usize;
         let place = match light.kind_and_index >> 30 {
             0 => bench.stage.prepared.bvh.elements[item / 2].triangles()[item % 2][0]
@@ -207,7 +214,7 @@ fn light_counts(drawn: &[Drawn]) -> Vec<u32> {
 
 #[test]
 fn lights_are_chosen_with_their_probabilities() {
-    let bench = Bench::new(&many_lights(), Vec3::new(2.0, 0.0, 0.1), Vec3::Y);
+    let bench = many_lights_bench();
     let probabilities = light_probabilities(&bench);
     assert!((probabilities.iter().sum::<f64>() - 1.0).abs() < 1e-6);
     let drawn = bench.draw("sample_any", 5);
@@ -225,7 +232,7 @@ fn lights_are_chosen_with_their_probabilities() {
 
 #[test]
 fn wrong_choices_of_lights_are_rejected() {
-    let mut bench = Bench::new(&many_lights(), Vec3::new(2.0, 0.0, 0.1), Vec3::Y);
+    let mut bench = many_lights_bench();
     let probabilities = light_probabilities(&bench);
     let (from, to) = ("< light.threshold", "< 0.9 * light.threshold");
     bench.setup = bench.setup.patched("light.wgsl", from, to);

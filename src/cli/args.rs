@@ -10,6 +10,7 @@ use super::load::LoadArgs;
 use super::parse;
 use crate::accel::Preset;
 use crate::image::ToneMap;
+use crate::render::LightSelection;
 use crate::scene::Selector;
 
 /// Arguments of `etendue render`. Of a flag that takes one value and is given again, the last counts.
@@ -61,6 +62,11 @@ pub struct RenderArgs {
     /// long renders
     #[arg(long, value_name = "NAME", default_value_t)]
     pub bvh: Preset,
+
+    /// What the choice of a light follows: uniform (nothing), power, or tree (what each light may contribute
+    /// at the point in question) [default: tree, unless lamps are few]
+    #[arg(long, value_name = "NAME")]
+    pub lights: Option<LightSelection>,
 
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::bvh_report::BvhReport;
 use super::exit::Exit;
+use super::lights_report::LightsReport;
 use super::load::LoadArgs;
 use super::{info_text, message};
 use crate::accel::{BuildOptions, Preset};
@@ -25,7 +26,7 @@ pub struct InfoArgs {
     load: LoadArgs,
 
     /// Build the acceleration structure too, as `etendue render` does with this preset (fast,
-    /// balanced or best), and tell its build time and size
+    /// balanced or best), and tell its build time and size, and how lights would be chosen
     #[arg(long, value_name = "NAME")]
     bvh: Option<Preset>,
 
@@ -44,11 +45,11 @@ pub fn run(args: &InfoArgs) -> Result<Exit> {
     valid.with_context(|| args.file.display().to_string())?;
     let described = Described {
         summary: Summary::of(&scene),
-        bvh: args.bvh.map(|preset| build(&scene, preset)).transpose()?,
+        built: args.bvh.map(|preset| build(&scene, preset)).transpose()?,
     };
     let text = match args.json {
         true => serde_json::to_string_pretty(&described)? + "\n",
-        false => info_text::describe(&described.summary, described.bvh.as_ref()),
+        false => info_text::describe(&described.summary, described.built.as_ref()),
     };
     message::print(&text).map(|()| Exit::Fine)
 }
@@ -57,12 +58,24 @@ pub fn run(args: &InfoArgs) -> Result<Exit> {
 struct Described {
     #[serde(flatten)]
     summary: Summary,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    bvh: Option<BvhReport>,
+    #[serde(flatten)]
+    built: Option<Built>,
 }
 
-fn build(scene: &Scene, preset: Preset) -> Result<BvhReport> {
+/// What a render would build.
+#[derive(Serialize)]
+pub struct Built {
+    /// The acceleration structure.
+    pub bvh: BvhReport,
+    /// How lights are chosen.
+    pub light_selection: LightsReport,
+}
+
+fn build(scene: &Scene, preset: Preset) -> Result<Built> {
     // The camera is the origin only; the loader sees to it that there is one.
     let prepared = Prepared::new(scene, 0, &BuildOptions::of(preset))?;
-    Ok(BvhReport::new(preset, &prepared))
+    Ok(Built {
+        bvh: BvhReport::new(preset, &prepared),
+        light_selection: LightsReport::new(&prepared),
+    })
 }

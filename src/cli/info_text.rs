@@ -3,18 +3,22 @@
 //! Names come from the file and are shown quoted and escaped, so that none of them disturbs a
 //! terminal.
 
-use super::bvh_report::BvhReport;
+use super::info::Built;
 use crate::scene::{FeatureReason, Summary};
 
 /// Rows of cells, to be aligned.
 type Rows = Vec<Vec<String>>;
 
 /// The whole text.
-pub fn describe(summary: &Summary, bvh: Option<&BvhReport>) -> String {
+pub fn describe(summary: &Summary, built: Option<&Built>) -> String {
     let mut text = overview(summary);
     text += &table(
         "acceleration structure",
-        bvh.map_or(vec![], BvhReport::rows),
+        built.map_or(vec![], |built| built.bvh.rows()),
+    );
+    text += &table(
+        "choice of a light",
+        built.map_or(vec![], |built| built.light_selection.rows()),
     );
     text += &table("animations", animations(summary));
     text += &table("variants of materials", variants(summary));

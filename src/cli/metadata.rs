@@ -26,6 +26,7 @@ pub fn metadata(
         ("integrator", settings.integrator.clone()),
         ("sampler", settings.sampler.clone()),
         ("max_depth", settings.max_depth.to_string()),
+        ("lights", report.lights.selection.unwrap_or("none").into()),
         ("overrides", overrides(args)),
         (
             "shader_hash",

@@ -12,6 +12,7 @@ mod exit;
 mod info;
 mod info_text;
 mod interrupt;
+mod lights_report;
 mod load;
 mod message;
 mod metadata;

@@ -10,6 +10,7 @@ use super::args::RenderArgs;
 use super::bvh_report::BvhReport;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
+use super::lights_report::LightsReport;
 use super::message::{self, Warnings};
 use super::metadata::metadata;
 use super::outputs::Outputs;
@@ -46,7 +47,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     settings.doublewords = stage("probe", || device.prefers_doublewords(library.cache()))?;
     let options = BuildOptions::of(args.bvh);
     let prepared = timed(&mut time.accel, || {
-        Prepared::new(&scene, settings.camera, &options)
+        Prepared::with_lights(&scene, settings.camera, &options, args.lights)
     })?;
     camera::focus(args, &mut scene, &prepared, &settings)?;
     warn_of_scene(&scene, &prepared, args, &mut warnings);
@@ -82,6 +83,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     let mut report = Report::new(args, &scene, &settings, device.info());
     report.seconds = time;
     report.bvh = BvhReport::new(args.bvh, &prepared);
+    report.lights = LightsReport::new(&prepared);
     report.add_film(&film, &renderer.progress(), args.stats, &mut warnings);
     report.interrupted = interrupt.requested();
     report.device_bytes = device.peak_bytes_in_use();

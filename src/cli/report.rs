@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::args::RenderArgs;
 use super::bvh_report::BvhReport;
+use super::lights_report::LightsReport;
 use super::load;
 use super::message::Warnings;
 use crate::gpu::DeviceInfo;
@@ -66,6 +67,8 @@ pub struct Report {
     pub triangles: u64,
     /// The acceleration structure.
     pub bvh: BvhReport,
+    /// The lights, and how one is chosen.
+    pub lights: LightsReport,
     /// Most bytes of device memory held at once.
     pub device_bytes: u64,
     /// Mean over the picture, W·sr⁻¹·m⁻², linear Rec. 709.

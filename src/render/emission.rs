@@ -10,28 +10,58 @@ const GRID: u32 = 4;
 /// Share of the untextured power that a triangle keeps, should all look-ups meet dark texels.
 const FLOOR: f64 = 0.01;
 
-/// Luminous weight of a triangle, W up to a constant: area × mean emitted luminance × faces that emit.
-pub fn triangle_power(
+/// What a triangle sends out, up to photometric weighting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Emission {
+    /// m².
+    pub area: f64,
+    /// Mean emitted luminance, W·sr⁻¹·m⁻².
+    pub radiance: f64,
+    /// Whether both faces emit.
+    pub double_sided: bool,
+}
+
+impl Emission {
+    /// Flux, W.
+    pub fn power(&self) -> f64 {
+        let faces = if self.double_sided { 2.0 } else { 1.0 };
+        self.area * self.radiance * faces * std::f64::consts::PI
+    }
+
+    /// What it sends along its normal, W·sr⁻¹.
+    pub fn intensity(&self) -> f64 {
+        self.area * self.radiance
+    }
+
+    /// Whether it sends anything, and a number.
+    pub fn is_light(&self) -> bool {
+        self.power() > 0.0 && self.power().is_finite()
+    }
+}
+
+/// The emission of a triangle of an emissive material.
+pub fn triangle_emission(
     scene: &Scene,
     material: &Material,
     corners: &[Vec3; 3],
     tex_coords: impl Fn(u32) -> [Vec2; 3],
-) -> f64 {
+) -> Emission {
     // Too small for the shader's own cross product: it finds no normal there.
     let [a, b, c] = corners;
-    if (b - a).cross(*c - *a) == Vec3::ZERO {
-        return 0.0;
-    }
+    let has_normal = (b - a).cross(*c - *a) != Vec3::ZERO;
     let [a, b, c] = corners.map(|v| v.as_dvec3());
     let area = 0.5 * (b - a).cross(c - a).length();
-    let faces = if material.double_sided { 2.0 } else { 1.0 };
     let uniform = luminance(material.emissive.as_dvec3());
     let mean = material.emissive_texture.as_ref().map_or(uniform, |slot| {
         let corners = tex_coords(slot.tex_coord);
         let mean = mean_texel(scene, slot, &corners) * material.emissive.as_dvec3();
         luminance(mean).max(FLOOR * uniform)
     });
-    area * mean * faces * std::f64::consts::PI
+    Emission {
+        area: if has_normal { area } else { 0.0 },
+        radiance: mean,
+        double_sided: material.double_sided,
+    }
 }
 
 /// Relative luminance of linear Rec. 709.

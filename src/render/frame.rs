@@ -24,7 +24,7 @@ pub fn base_frame(scene: &Scene, prepared: &Prepared, settings: &Settings) -> Fr
         half_extent,
         max_depth: settings.max_depth,
         seed: settings.seed,
-        light_count: prepared.lights.len() as u32,
+        light_count: prepared.lights.table.len() as u32,
         // Only a kernel with an environment that the scene has not reads it where there is none.
         environment_light: match prepared.environment_light {
             NONE => 0,

@@ -73,9 +73,9 @@ impl GpuScene {
 
 fn fixed_buffers(device: &Device, scene: &Prepared) -> Result<Vec<(u32, Buffer)>, GpuError> {
     // A kernel with lights that the scene has not may look at the first.
-    let lights = match scene.lights.is_empty() {
+    let lights = match scene.lights.table.is_empty() {
         true => device.buffer_with("lights", &[Light::default()])?,
-        false => device.buffer_with("lights", &scene.lights)?,
+        false => device.buffer_with("lights", &scene.lights.table)?,
     };
     Ok(vec![
         (4, device.buffer_with("materials", &scene.materials)?),
@@ -108,5 +108,6 @@ fn paged_buffers(device: &Device, scene: &Prepared) -> Result<Vec<PagedBuffer>, 
         words(device, 3, &scene.textures.words)?,
         PagedBuffer::upload(device, 4, &environment.texels)?,
         words(device, 5, &environment.cdf)?,
+        PagedBuffer::upload(device, 6, scene.lights.nodes())?,
     ])
 }

@@ -349,16 +349,34 @@ shared_struct! {
 }
 
 shared_struct! {
-    /// An entry of the alias table over all lights.
+    /// A light: an entry of the alias table, or a leaf of the tree.
     Light {
         /// Keep below, else take the alias.
         threshold: f32,
-        /// The other entry.
+        /// The other entry; of a leaf the way to it, a bit a decision.
         alias_index: u32,
-        /// Probability of this light.
+        /// Probability of this light; 0 for a leaf, whose probability depends on the place.
         probability: f32,
         /// Kind and index.
         kind_and_index: u32,
+    }
+}
+
+shared_struct! {
+    /// A group of lights in the tree of lights (`light_tree/node.rs`).
+    LightNode {
+        /// Middle of the box, relative to the camera.
+        center: [f32; 3],
+        /// Half sizes of the box.
+        extent: u32,
+        /// Axis of the cone of directions.
+        axis: u32,
+        /// Cosines of the cone's angle and of how far beyond it the lights shine.
+        cones: u32,
+        /// Share of the whole tree's intensity.
+        intensity: f32,
+        /// First of the two children, or a light.
+        link: u32,
     }
 }
 
@@ -401,6 +419,7 @@ pub fn layouts() -> Vec<StructLayout> {
         Material::layout(),
         Texture::layout(),
         Light::layout(),
+        LightNode::layout(),
         PunctualLight::layout(),
     ]
 }

@@ -8,13 +8,14 @@ use crate::gpu::{Buffer, Device, GpuError};
 pub const FIRST_PAGED_BINDING: u32 = 16;
 
 /// Name, WGSL element type and accessor of each large array, in the order of their bindings.
-pub const LARGE_ARRAYS: [(&str, &str, &str); 6] = [
+pub const LARGE_ARRAYS: [(&str, &str, &str); 7] = [
     ("elements", "Element", "load_element"),
     ("indices", "u32", "load_index"),
     ("vertex_words", "f32", "load_vertex_word"),
     ("texel_words", "u32", "load_texel_word"),
     ("environment_texels", "vec4f", "load_environment_texel"),
     ("environment_cdf", "u32", "load_environment_cdf"),
+    ("light_nodes", "LightNode", "load_light_node"),
 ];
 
 /// The `buffers.wgsl` of a scene whose large arrays have `pages` pages each: for compiling without

@@ -7,12 +7,13 @@ use rayon::prelude::*;
 
 use super::albedo::BsdfTables;
 use super::attach::attach;
-use super::emission::triangle_power;
+use super::emission::triangle_emission;
 use super::environment::EnvironmentTable;
 use super::error::RenderError;
 use super::flatten::FlatGeometry;
 use super::layout::{self, NONE};
-use super::lights::{LightList, punctual};
+use super::light_selection::LightSelection;
+use super::lights::{LightList, Lights, position, punctual};
 use super::materials::materials;
 use super::media::media_around;
 use super::textures::TextureSet;
@@ -35,8 +36,6 @@ pub struct Prepared {
     pub bvh: Bvh,
     /// Wall time of its build, the stage `bvh`.
     pub bvh_time: Duration,
-    /// Whether any of its triangles is in the table of lights.
-    pub has_light_triangles: bool,
     /// Vertex indices of each triangle.
     pub indices: Vec<[u32; 3]>,
     /// Vertex attributes.
@@ -51,8 +50,8 @@ pub struct Prepared {
     pub media: [u32; 4],
     /// Textures.
     pub textures: TextureSet,
-    /// The alias table over all lights.
-    pub lights: Vec<layout::Light>,
+    /// All lights, and how one is chosen.
+    pub lights: Lights,
     /// Punctual lights.
     pub punctual: Vec<layout::PunctualLight>,
     /// The environment's picture, if it has one.
@@ -64,11 +63,26 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Flattens a validated scene around one of its cameras and builds its BVH.
+    /// Flattens a validated scene around one of its cameras and builds its BVH. Lights are chosen as suits
+    /// their number.
     ///
     /// # Errors
     /// [`RenderError::TooMany`].
     pub fn new(scene: &Scene, camera: usize, options: &BuildOptions) -> Result<Self, RenderError> {
+        Self::with_lights(scene, camera, options, None)
+    }
+
+    /// The same, lights chosen as is wished. A tree of lights that are nowhere cannot be: then they are
+    /// chosen by power, and a warning says so.
+    ///
+    /// # Errors
+    /// [`RenderError::TooMany`].
+    pub fn with_lights(
+        scene: &Scene,
+        camera: usize,
+        options: &BuildOptions,
+        wish: Option<LightSelection>,
+    ) -> Result<Self, RenderError> {
         check_counts(scene)?;
         let features = Features::of(scene);
         let vertex_format = VertexFormat::new(VertexNeeds {
@@ -94,14 +108,17 @@ impl Prepared {
             add_triangle_lights(&mut lights, scene, &flat, &vertex_format, &bvh.order);
         attach(&mut bvh, &flat, &triangle_lights);
         let (near, lost) = punctual_lights(scene, origin);
-        let environment_light = add_other_lights(&mut lights, scene, &near, &flat, &environment);
+        let environment_light =
+            add_other_lights(&mut lights, scene, &near, origin, &flat, &environment);
+        let lights = lights.finish(wish);
+        let mut warnings = warnings(flat.dropped, lost);
+        warnings.extend(unmet_wish(wish, &lights));
         Ok(Self {
             features,
             origin,
             bvh,
             bvh_time,
-            has_light_triangles: triangle_lights.iter().any(|&light| light != NONE),
-            warnings: warnings(flat.dropped, lost),
+            warnings,
             indices: flat.indices,
             vertex_words: flat.words,
             vertex_format,
@@ -109,7 +126,7 @@ impl Prepared {
             bsdf_tables,
             media: media_around(scene, origin),
             textures,
-            lights: lights.table(),
+            lights,
             punctual: near.iter().map(|l| punctual(l, origin)).collect(),
             environment,
             environment_light,
@@ -212,9 +229,9 @@ fn add_triangle_lights(
     for i in found {
         let material = &scene.materials[flat.material(i)];
         let corners = |set| flat.indices[i].map(|v| tex_coord(flat, format, v, set));
-        let power = triangle_power(scene, material, &flat.triangles[i], corners);
-        if power > 0.0 && power.is_finite() {
-            table[i] = lights.add_triangle(order[i].id, power);
+        let emission = triangle_emission(scene, material, &flat.triangles[i], corners);
+        if emission.is_light() {
+            table[i] = lights.add_triangle(order[i].id, &flat.triangles[i], &emission);
         }
     }
     table
@@ -231,7 +248,7 @@ fn tex_coord(flat: &FlatGeometry, format: &VertexFormat, vertex: u32, set: u32) 
 /// The punctual lights that shine, and the number of those too far away for f32.
 fn punctual_lights(scene: &Scene, origin: DVec3) -> (Vec<&PunctualLight>, u64) {
     let reachable = |light: &PunctualLight| {
-        light.kind == LightKind::Directional || (light.position - origin).as_vec3().is_finite()
+        light.kind == LightKind::Directional || position(light, origin).is_finite()
     };
     let shining = scene
         .lights
@@ -246,13 +263,19 @@ fn add_other_lights(
     lights: &mut LightList,
     scene: &Scene,
     punctual: &[&PunctualLight],
+    origin: DVec3,
     flat: &FlatGeometry,
     table: &EnvironmentTable,
 ) -> u32 {
     // In a scene without extent any radius will do.
     let radius = flat.radius().max(f64::MIN_POSITIVE);
-    for (i, light) in punctual.iter().enumerate() {
-        lights.add_punctual(i as u32, light, radius);
+    // Those that are somewhere come first.
+    for directional in [false, true] {
+        for (i, light) in punctual.iter().enumerate() {
+            if (light.kind == LightKind::Directional) == directional {
+                lights.add_punctual(i as u32, light, position(light, origin), radius);
+            }
+        }
     }
     let Some(environment) = &scene.environment else {
         return NONE;
@@ -267,6 +290,16 @@ fn add_other_lights(
         return NONE;
     }
     lights.add_environment(mean, radius)
+}
+
+/// Why lights are chosen otherwise than was wished.
+fn unmet_wish(wish: Option<LightSelection>, lights: &Lights) -> Option<String> {
+    let unmet = wish == Some(LightSelection::Tree) && lights.tree.is_none();
+    unmet.then(|| {
+        "the scene has no emissive triangle, point or spot light for a tree of lights: a light is chosen by \
+         power"
+            .into()
+    })
 }
 
 fn warnings(dropped: u64, lost_lights: u64) -> Vec<String> {

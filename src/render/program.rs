@@ -152,15 +152,23 @@ pub fn constants(
     list.extend([
         (
             "HAS_LIGHT_TRIANGLES",
-            Constant::Bool(scene.has_light_triangles || asked(&["emissive"])),
+            Constant::Bool(scene.lights.has_triangles() || asked(&["emissive"])),
         ),
         (
             "HAS_PUNCTUAL_LIGHTS",
-            Constant::Bool(scene.lights.iter().any(super::lights::is_punctual) || asked(&punctual)),
+            Constant::Bool(scene.lights.has_punctual() || asked(&punctual)),
         ),
         (
             "HAS_SEVERAL_LIGHTS",
-            Constant::Bool(scene.lights.len() > 1 || lights),
+            Constant::Bool(scene.lights.table.len() > 1 || lights),
+        ),
+        (
+            "HAS_LIGHT_TREE",
+            Constant::Bool(scene.lights.tree.is_some()),
+        ),
+        (
+            "HAS_LIGHTS_OUTSIDE_TREE",
+            Constant::Bool(scene.lights.outside_tree > 0),
         ),
         (
             "HAS_ENVIRONMENT",

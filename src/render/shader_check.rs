@@ -59,6 +59,8 @@ pub fn constants(on: bool) -> Vec<(&'static str, Constant)> {
         ("HAS_LIGHT_TRIANGLES", Constant::Bool(on)),
         ("HAS_PUNCTUAL_LIGHTS", Constant::Bool(on)),
         ("HAS_SEVERAL_LIGHTS", Constant::Bool(on)),
+        ("HAS_LIGHT_TREE", Constant::Bool(on)),
+        ("HAS_LIGHTS_OUTSIDE_TREE", Constant::Bool(on)),
         ("HAS_ENVIRONMENT", Constant::Bool(on)),
         ("HAS_ENVIRONMENT_IMAGE", Constant::Bool(on)),
         ("VERTEX_STRIDE", Constant::U32(if on { 15 } else { 0 })),

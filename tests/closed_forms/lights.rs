@@ -111,8 +111,6 @@ fn what_is_in_the_way_casts_a_shadow() {
 fn lights_add_up() {
     let places = [(1.0, 0.2), (2.0, 0.9), (0.7, 1.2), (5.0, 0.0)];
     let scene = receiver(|b| {
-        // How much of a sun a scene catches is judged by the extent of its surfaces.
-        b.quad(black(), DVec3::Y * -3.0, DVec3::X * 5.0, DVec3::Z * 5.0);
         for (d, theta) in places {
             b.point(place(d, theta), 4.0);
         }

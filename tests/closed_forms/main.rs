@@ -14,6 +14,7 @@ mod emission;
 mod furnace;
 mod lens;
 mod lights;
+mod many_lights;
 mod panorama;
 mod polygons;
 mod scale;

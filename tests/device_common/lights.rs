@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use etendue::render::LightSelection;
 use etendue::scene::{Environment, EnvironmentImage, Scene};
 use glam::Vec3;
 
@@ -21,7 +22,16 @@ pub type Drawn = [[f32; 4]; 3];
 
 impl Bench {
     pub fn new(scene: &Scene, point: Vec3, normal: Vec3) -> Self {
-        let stage = Stage::new(scene);
+        Self::with_lights(scene, point, normal, None)
+    }
+
+    pub fn with_lights(
+        scene: &Scene,
+        point: Vec3,
+        normal: Vec3,
+        wish: Option<LightSelection>,
+    ) -> Self {
+        let stage = Stage::with_lights(scene, wish);
         Self {
             setup: Setup::new()
                 .with(stage.constants())

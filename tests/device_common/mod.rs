@@ -69,6 +69,8 @@ impl Setup {
             "HAS_LIGHT_TRIANGLES",
             "HAS_PUNCTUAL_LIGHTS",
             "HAS_SEVERAL_LIGHTS",
+            "HAS_LIGHT_TREE",
+            "HAS_LIGHTS_OUTSIDE_TREE",
             "HAS_ENVIRONMENT",
             "HAS_ENVIRONMENT_IMAGE",
             "COUNT_STEPS",

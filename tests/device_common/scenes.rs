@@ -4,7 +4,7 @@ use etendue::accel::BuildOptions;
 use etendue::gpu::Buffer;
 use etendue::render::layout::Frame;
 use etendue::render::program::Constant;
-use etendue::render::{GpuScene, Prepared, Settings, program};
+use etendue::render::{GpuScene, LightSelection, Prepared, Settings, program};
 use etendue::scene::{Camera, Instance, Material, Mesh, Projection, Scene};
 use glam::{DMat4, Vec3, Vec4};
 
@@ -19,8 +19,13 @@ pub struct Stage {
 
 impl Stage {
     pub fn new(scene: &Scene) -> Self {
+        Self::with_lights(scene, None)
+    }
+
+    pub fn with_lights(scene: &Scene, wish: Option<LightSelection>) -> Self {
         scene.validate().expect("a valid scene");
-        let prepared = Prepared::new(scene, 0, &BuildOptions::default()).expect("prepared");
+        let prepared = Prepared::with_lights(scene, 0, &BuildOptions::default(), wish);
+        let prepared = prepared.expect("prepared");
         let gpu_scene = GpuScene::upload(device(), &prepared).expect("uploaded");
         let frame = upload("frame", &[frame(scene, &prepared)]);
         Self {
@@ -50,7 +55,7 @@ fn frame(scene: &Scene, prepared: &Prepared) -> Frame {
     let image = environment.and_then(|e| e.image.as_ref());
     let rotation = environment.map_or(0.0, |e| e.rotation);
     Frame {
-        light_count: prepared.lights.len() as u32,
+        light_count: prepared.lights.table.len() as u32,
         punctual_count: prepared.punctual.len() as u32,
         environment_light: prepared.environment_light,
         environment_width: image.map_or(0, |i| i.width as u32),

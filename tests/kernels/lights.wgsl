@@ -28,7 +28,7 @@ fn write(index: u32, s: LightSample) {
 fn sample_any(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < params.x) {
         var random = sampler_begin(vec2u(5u, 9u), vec2u(id.x, 0u), params.y);
-        write(id.x, sample_light(test_surface(), &random));
+        write(id.x, sample_light(test_surface(), false, &random));
     }
 }
 
@@ -90,7 +90,8 @@ fn evaluate_triangles(@builtin(global_invocation_id) id: vec3u, @builtin(local_i
         let s = surface_at(ray, hit);
         let distance = stable_length(s.position - ray.origin);
         let pdf = light_triangle_pdf(distance, abs(dot(s.wo, s.normal)), s.area);
-        result = vec4f(emitted_radiance(s), lights[s.light].probability * pdf);
+        let chosen = light_probability(s.light, ray.origin, inputs[1].xyz);
+        result = vec4f(emitted_radiance(s), chosen * pdf);
     }
     outputs[id.x] = result;
 }

@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 
 use etendue::accel::BuildOptions;
 use etendue::gpu::Device;
-use etendue::render::{Film, GpuScene, Prepared, Renderer, Settings};
+use etendue::render::{Film, GpuScene, LightSelection, Prepared, Renderer, Settings};
 use etendue::scene::{Scene, gltf};
 use etendue::shader::ShaderLibrary;
 
@@ -30,10 +30,15 @@ pub fn device() -> &'static Device {
 
 /// Renders a scene and insists on what every film has to be: complete and finite.
 pub fn render(scene: &Scene, settings: &Settings) -> Film {
+    render_with(scene, settings, None)
+}
+
+/// The same, lights chosen as is wished.
+pub fn render_with(scene: &Scene, settings: &Settings, wish: Option<LightSelection>) -> Film {
     scene.validate().expect("the test's scene is valid");
-    let prepared =
-        Prepared::new(scene, settings.camera, &BuildOptions::default()).expect("a prepared scene");
-    render_prepared(scene, &prepared, settings)
+    let options = BuildOptions::default();
+    let prepared = Prepared::with_lights(scene, settings.camera, &options, wish);
+    render_prepared(scene, &prepared.expect("a prepared scene"), settings)
 }
 
 /// The same for a scene that has been prepared, and perhaps been changed since.

@@ -5,7 +5,8 @@ import json
 import pathlib
 import sys
 
-from . import assets, builder, compare, gpu, kernel, peer_etendue, places, scaling, scene_writer, tables
+from . import assets, builder, compare, gpu, kernel, light_scenes, lights, peer_etendue, places, scaling
+from . import scene_writer, tables
 from .places import BenchError
 
 
@@ -29,7 +30,7 @@ def parser():
     top = argparse.ArgumentParser(
         prog="tools/bench",
         description="Measures étendue against its peers.",
-        epilog="Also: tools/bench scaling, tools/bench gpu, tools/bench kernel, tools/bench bvh; each has --help.",
+        epilog="Also: tools/bench scaling, tools/bench gpu, tools/bench kernel, tools/bench bvh, tools/bench lights; each has --help.",
     )
     top.add_argument(
         "--scenes", default="", help=f"comma-separated: {', '.join(scene_writer.NAMES)} (default: all that can be had)"
@@ -180,13 +181,37 @@ def measure_bvh(arguments):
     return finish(options, rows, builder.markdown(rows, *drawn))
 
 
+def measure_lights(arguments):
+    description = "Noise at equal time against the number of emissive triangles, by --lights uniform, power, tree."
+    top = options_alone("lights", description, ",".join(light_scenes.SCENES), 16)
+    counts = ",".join(map(str, lights.COUNTS))
+    top.add_argument("--counts", default=counts, help="emissive triangles, comma-separated (default %(default)s)")
+    top.add_argument("--size", type=positive, default=128, help="width and height (default %(default)s)")
+    top.add_argument("--depth", type=positive, default=8, help="most edges of a path (default %(default)s)")
+    options = top.parse_args(arguments)
+    scenes = split(options.scenes, light_scenes.SCENES, "--scenes")
+    drawn = options.rounds, options.spp, options.size, options.depth
+    try:
+        counts = [positive(count) for count in options.counts.split(",")]
+    except (ValueError, argparse.ArgumentTypeError):
+        raise BenchError(f"--counts {options.counts}: give whole numbers from 1 on, separated by commas") from None
+    rows = lights.measure(command_of(options), options.threads, scenes, counts, *drawn)
+    return finish(options, rows, lights.markdown(rows, *drawn))
+
+
 def finish(options, report, table):
     write(options, report, table)
     print(table)
     return 0
 
 
-COMMANDS = {"scaling": measure_scaling, "gpu": measure_gpu, "kernel": measure_kernel, "bvh": measure_bvh}
+COMMANDS = {
+    "scaling": measure_scaling,
+    "gpu": measure_gpu,
+    "kernel": measure_kernel,
+    "bvh": measure_bvh,
+    "lights": measure_lights,
+}
 
 
 def main(arguments):

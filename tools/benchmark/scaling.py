@@ -53,8 +53,8 @@ def axes(threads, most_triangles, scale):
             "lights",
             "emissive triangles",
             [Point(2 * k * k, f"lamps:{k}", 256, 4 * scale) for k in (1, 4, 16, 64, 256)],
-            "1 for choosing one (alias table), log n for the rays that meet them",
-            lambda x: 1.0,
+            "log n for choosing one (a tree), and for the rays that meet them",
+            logarithm,
         ),
         Axis(
             "depth",

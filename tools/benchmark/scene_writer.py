@@ -184,9 +184,10 @@ def path_of(name):
     return write_once(name, writer_of(name))
 
 
-def write_once(name, writer):
+def write_once(name, writer, *more_sources):
     """A scene in the cache, made by writer(folder) all at once."""
     sources = [pathlib.Path(__file__), pathlib.Path(assets.__file__), *sorted((TOOLS / "scenes").glob("*.py"))]
+    sources += map(pathlib.Path, more_sources)
     key = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:12]
     folder = cache() / "scenes" / f"{name}-{key}"
     if not (folder / "scene.gltf").exists():
