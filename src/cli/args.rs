@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::environment::EnvironmentArg;
 use super::parse;
-use crate::accel::Preset;
+use crate::accel::{Instancing, Preset};
 use crate::image::ToneMap;
 use crate::scene::Selector;
 
@@ -56,6 +56,11 @@ pub struct RenderArgs {
     /// long renders
     #[arg(long, value_name = "NAME", default_value_t)]
     pub bvh: Preset,
+
+    /// Whether instances of a mesh share its geometry: auto (where that saves much memory; rays then
+    /// take longer), never, always
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub instancing: Instancing,
 
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]

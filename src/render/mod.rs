@@ -23,6 +23,7 @@ pub mod program;
 mod renderer;
 mod settings;
 pub mod shader_check;
+mod sharing;
 mod textures;
 mod vertex_format;
 
@@ -35,3 +36,4 @@ pub use paged::large_arrays_wgsl;
 pub use prepared::Prepared;
 pub use renderer::{Progress, Renderer};
 pub use settings::Settings;
+pub use sharing::{SharedTree, Sharing};

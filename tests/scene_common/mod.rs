@@ -30,10 +30,14 @@ pub fn device() -> &'static Device {
 
 /// Renders a scene and insists on what every film has to be: complete and finite.
 pub fn render(scene: &Scene, settings: &Settings) -> Film {
+    render_with(scene, settings, &BuildOptions::default())
+}
+
+/// The same with a structure of another kind.
+pub fn render_with(scene: &Scene, settings: &Settings, options: &BuildOptions) -> Film {
     scene.validate().expect("the test's scene is valid");
     let device = device();
-    let prepared =
-        Prepared::new(scene, settings.camera, &BuildOptions::default()).expect("a prepared scene");
+    let prepared = Prepared::new(scene, settings.camera, options).expect("a prepared scene");
     let gpu_scene = GpuScene::upload(device, &prepared).expect("room on the device");
     let library = ShaderLibrary::embedded();
     let mut renderer = Renderer::new(device, &library, scene, &prepared, &gpu_scene, settings)
