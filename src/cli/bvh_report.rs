@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use crate::accel::Preset;
-use crate::render::Prepared;
+use crate::render::{Prepared, Sharing};
+use crate::scene::Scene;
 
 /// The acceleration structure of a render.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -30,7 +31,7 @@ pub struct InstancingReport {
     /// Placements of these trees.
     pub instances: usize,
     /// Triangles that are in memory, those of a tree once.
-    pub triangles: usize,
+    pub triangles: u64,
     /// Estimated bytes of all geometry and its structure,
     pub estimated_bytes: u64,
     /// and what they would be if every instance had a copy of its own.
@@ -48,13 +49,7 @@ impl BvhReport {
             bytes,
             bytes_per_triangle: (triangles > 0).then(|| bytes as f64 / triangles as f64),
             depth: prepared.bvh.depth,
-            instancing: InstancingReport {
-                trees: prepared.bvh.trees.len(),
-                instances: prepared.bvh.instances.len(),
-                triangles,
-                estimated_bytes: prepared.sharing.bytes,
-                estimated_bytes_flat: prepared.sharing.flat_bytes,
-            },
+            instancing: InstancingReport::new(&prepared.sharing, triangles as u64),
         }
     }
 
@@ -64,24 +59,41 @@ impl BvhReport {
         let share = self
             .bytes_per_triangle
             .map_or(String::new(), |share| format!(", {share:.1} a triangle"));
-        let mut rows = vec![
+        vec![
             row("preset", self.preset.into()),
             row("build", format!("{:.3} s", self.seconds)),
             row("bytes", format!("{}{share}", self.bytes)),
             row("depth", self.depth.to_string()),
-        ];
-        let i = &self.instancing;
-        if i.instances > 0 {
-            let shared = format!(
-                "{} of {} trees, with {} triangles in memory",
-                i.instances, i.trees, i.triangles
-            );
-            let bytes = format!(
-                "about {}, flattened {}",
-                i.estimated_bytes, i.estimated_bytes_flat
-            );
-            rows.extend([row("instances", shared), row("geometry bytes", bytes)]);
+        ]
+    }
+}
+
+impl InstancingReport {
+    /// Of a decision that leaves so many triangles in memory.
+    pub fn new(sharing: &Sharing, triangles: u64) -> InstancingReport {
+        InstancingReport {
+            trees: sharing.trees.len(),
+            instances: sharing.placements.len(),
+            triangles,
+            estimated_bytes: sharing.bytes,
+            estimated_bytes_flat: sharing.flat_bytes,
         }
-        rows
+    }
+
+    /// Before a scene is prepared.
+    pub fn of(scene: &Scene, sharing: &Sharing) -> InstancingReport {
+        InstancingReport::new(sharing, sharing.counts(scene).0)
+    }
+
+    /// In words.
+    pub fn describe(&self) -> String {
+        let bytes = format!("about {} bytes on the device", self.estimated_bytes);
+        match self.instances {
+            0 => format!("none shared, {bytes}"),
+            n => format!(
+                "{n} share {} trees: {} triangles, {bytes} instead of {}",
+                self.trees, self.triangles, self.estimated_bytes_flat
+            ),
+        }
     }
 }

@@ -6,11 +6,11 @@ use anyhow::{Context, Result};
 use clap::Args;
 use serde::Serialize;
 
-use super::bvh_report::BvhReport;
+use super::bvh_report::{BvhReport, InstancingReport};
 use super::exit::Exit;
 use super::{info_text, message};
-use crate::accel::{BuildOptions, Preset};
-use crate::render::Prepared;
+use crate::accel::{BuildOptions, Instancing, Preset};
+use crate::render::{Prepared, Sharing};
 use crate::scene::{Scene, Selector, Summary, gltf};
 
 /// Arguments of `etendue info`.
@@ -28,6 +28,11 @@ pub struct InfoArgs {
     /// balanced or best), and tell its build time and size
     #[arg(long, value_name = "NAME")]
     bvh: Option<Preset>,
+
+    /// Whether instances of a mesh share its geometry: auto (where that saves much memory), never,
+    /// always
+    #[arg(long, value_name = "NAME", default_value_t)]
+    instancing: Instancing,
 
     /// Print it as JSON
     #[arg(long)]
@@ -47,11 +52,19 @@ pub fn run(args: &InfoArgs) -> Result<Exit> {
     valid.with_context(|| args.file.display().to_string())?;
     let described = Described {
         summary: Summary::of(&scene),
-        bvh: args.bvh.map(|preset| build(&scene, preset)).transpose()?,
+        instancing: InstancingReport::of(&scene, &Sharing::of(&scene, args.instancing)),
+        bvh: args
+            .bvh
+            .map(|preset| build(&scene, preset, args))
+            .transpose()?,
     };
     let text = match args.json {
         true => serde_json::to_string_pretty(&described)? + "\n",
-        false => info_text::describe(&described.summary, described.bvh.as_ref()),
+        false => info_text::describe(
+            &described.summary,
+            &described.instancing,
+            described.bvh.as_ref(),
+        ),
     };
     message::print(&text).map(|()| Exit::Fine)
 }
@@ -60,12 +73,17 @@ pub fn run(args: &InfoArgs) -> Result<Exit> {
 struct Described {
     #[serde(flatten)]
     summary: Summary,
+    instancing: InstancingReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     bvh: Option<BvhReport>,
 }
 
-fn build(scene: &Scene, preset: Preset) -> Result<BvhReport> {
+fn build(scene: &Scene, preset: Preset, args: &InfoArgs) -> Result<BvhReport> {
+    let options = BuildOptions {
+        instancing: args.instancing,
+        ..BuildOptions::of(preset)
+    };
     // The camera is the origin only; the loader sees to it that there is one.
-    let prepared = Prepared::new(scene, 0, &BuildOptions::of(preset))?;
+    let prepared = Prepared::new(scene, 0, &options)?;
     Ok(BvhReport::new(preset, &prepared))
 }

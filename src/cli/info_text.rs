@@ -3,15 +3,19 @@
 //! Names come from the file and are shown quoted and escaped, so that none of them disturbs a
 //! terminal.
 
-use super::bvh_report::BvhReport;
+use super::bvh_report::{BvhReport, InstancingReport};
 use crate::scene::Summary;
 
 /// Rows of cells, to be aligned.
 type Rows = Vec<Vec<String>>;
 
 /// The whole text.
-pub fn describe(summary: &Summary, bvh: Option<&BvhReport>) -> String {
-    let mut text = overview(summary);
+pub fn describe(
+    summary: &Summary,
+    instancing: &InstancingReport,
+    bvh: Option<&BvhReport>,
+) -> String {
+    let mut text = overview(summary, instancing);
     text += &table(
         "acceleration structure",
         bvh.map_or(vec![], BvhReport::rows),
@@ -27,7 +31,7 @@ pub fn describe(summary: &Summary, bvh: Option<&BvhReport>) -> String {
     text
 }
 
-fn overview(s: &Summary) -> String {
+fn overview(s: &Summary, instancing: &InstancingReport) -> String {
     let scene = match s.scenes.get(s.scene_index) {
         Some(name) => format!("{} {name:?} of {}", s.scene_index, s.scenes.len()),
         None => "the file names none: all of it".into(),
@@ -48,6 +52,7 @@ fn overview(s: &Summary) -> String {
             "meshes",
             format!("{}, placed {} times", s.meshes, s.instances),
         ),
+        row("instances", instancing.describe()),
         row("bounds", bounds),
         row("BLAKE3", s.hash.clone()),
     ];

@@ -17,8 +17,9 @@ use std::ops::Range;
 use glam::{DMat3, DMat4, DVec3};
 use rayon::prelude::*;
 
+use super::vertex_format::VertexFormat;
 use crate::accel::{Instancing, MAX_TRIANGLES, Placement};
-use crate::scene::{Mesh, Scene};
+use crate::scene::{Features, Mesh, Scene};
 
 /// What a placement adds: a leaf and a record of 64 bytes each, and its share of the nodes above.
 const PLACEMENT_BYTES: u64 = 140;
@@ -87,6 +88,14 @@ impl Sharing {
             _ => true,
         };
         if keep { sharing } else { nothing }
+    }
+
+    /// The same as a render from the scene's first camera has it.
+    pub fn of(scene: &Scene, instancing: Instancing) -> Self {
+        let stride = VertexFormat::of(&Features::of(scene)).stride;
+        let camera = scene.cameras.first();
+        let origin = camera.map_or(DVec3::ZERO, |c| c.to_world.w_axis.truncate());
+        Self::new(scene, stride, origin, instancing)
     }
 
     /// Shares a group, if that is possible and saves enough.
