@@ -56,6 +56,9 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
     s.light = triangle.light;
     s.back_face = hit.back_face;
     s.color = vec4f(1.0);
+    if (HAS_INSTANCES) {
+        place_surface(&s, triangle);
+    }
     read_vertices(&s, triangle, b);
     return s;
 }
@@ -93,13 +96,22 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
     if (VERTEX_STRIDE > 0u) {
         let first = vertex_words(triangle.index);
         if (HAS_NORMALS && (triangle.flags & TRIANGLE_FLAT) == 0u) {
-            normal = normalize_or(interpolate_vec3(first + NORMAL_OFFSET, b), geometric);
+            if (HAS_INSTANCES) {
+                normal = interpolate_placed_normal((*s).triangle, first + NORMAL_OFFSET, b);
+            } else {
+                normal = interpolate_vec3(first + NORMAL_OFFSET, b);
+            }
+            normal = normalize_or(normal, geometric);
         }
         if (HAS_COLORS && (triangle.flags & TRIANGLE_COLORS) != 0u) {
             (*s).color = interpolate_vec4(first + COLOR_OFFSET, b);
         }
         if (HAS_TANGENTS && (triangle.flags & TRIANGLE_TANGENTS) != 0u) {
-            tangent = interpolate_vec4(first + TANGENT_OFFSET, b);
+            if (HAS_INSTANCES) {
+                tangent = interpolate_placed_tangent((*s).triangle, first + TANGENT_OFFSET, b);
+            } else {
+                tangent = interpolate_vec4(first + TANGENT_OFFSET, b);
+            }
         }
     }
     let uv = texture_coordinates(triangle.index, b);
@@ -216,3 +228,6 @@ fn round_away(x: f32, direction: f32) -> f32 {
     }
     return x;
 }
+
+// Uses what is above.
+#include "placed_surface.wgsl"

@@ -58,6 +58,28 @@ fn info_builds_the_acceleration_structure_when_asked() {
 }
 
 #[test]
+fn info_tells_what_instances_share() {
+    let instancing = |more: &[&str]| {
+        let arguments = [&["info", "scenes/foliage.gltf", "--json"], more].concat();
+        etendue(&arguments).ends_with(0).json()["instancing"].clone()
+    };
+    let usual = instancing(&[]);
+    assert_eq!(usual["instances"], 0);
+    assert_eq!(usual["estimated_bytes"], usual["estimated_bytes_flat"]);
+    let always = instancing(&["--instancing", "always", "--bvh", "fast"]);
+    assert!(
+        always["trees"].as_u64() > Some(0)
+            && always["instances"].as_u64() >= always["trees"].as_u64()
+    );
+    let text = etendue(&["info", "scenes/foliage.gltf"])
+        .ends_with(0)
+        .stdout;
+    assert!(text.contains("none shared"), "{text}");
+    let refused = ["info", "scenes/foliage.gltf", "--instancing", "some"];
+    etendue(&refused).refused(&["some", "auto, never or always"]);
+}
+
+#[test]
 fn info_needs_no_device() {
     let mut command = cli_support::command(&["info", "scenes/furnace.gltf"]);
     // The loader then finds no driver.

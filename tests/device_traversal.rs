@@ -299,7 +299,7 @@ fn rays_that_are_traced_together_are_answered_as_alone() {
 #[test]
 fn a_wrong_tie_is_noticed() {
     let (from, to) = ("id < best.triangle", "id > best.triangle");
-    let setup = Setup::new().patched("accel/bvh.wgsl", from, to);
+    let setup = Setup::new().patched("accel/closest.wgsl", from, to);
     let same = vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 500];
     let sum = compare(&setup, vec![("all the same", same)], TREE, RAYS);
     assert!(sum.unlike * 10 > sum.hits, "{sum:?}");
@@ -328,7 +328,7 @@ fn bounds_that_are_too_narrow_are_noticed() {
 #[test]
 fn a_child_too_few_is_noticed() {
     let (from, to) = ("slots <= vec4u(count)", "slots < vec4u(count)");
-    let setup = Setup::new().patched("accel/bvh.wgsl", from, to);
+    let setup = Setup::new().patched("accel/boxes.wgsl", from, to);
     let sum = compare(&setup, vec![("cube", cube(8))], TREE, RAYS);
     assert!(sum.unlike * 100 > sum.hits, "{sum:?}");
 }

@@ -1,6 +1,7 @@
 // Decoding of a tree's elements: wide nodes and pairs of triangles (src/accel/element.rs).
 
 #include "bindings.wgsl"
+#include "accel/instance.wgsl"
 
 struct PairVertices {
   v0: vec3f,
@@ -56,7 +57,10 @@ fn pair_triangle(e: Element, second: bool) -> Triangle {
   );
 }
 
-// The triangle of a hit.
+// The triangle of a hit; in an instance it is in the space of its tree.
 fn load_triangle(id: u32) -> Triangle {
+  if (HAS_INSTANCES) {
+    return pair_triangle(load_element(instance_hit(id).element), (id & 1u) != 0u);
+  }
   return pair_triangle(load_element(id >> 1u), (id & 1u) != 0u);
 }

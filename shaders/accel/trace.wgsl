@@ -1,5 +1,5 @@
 // What every acceleration structure has: hits, and the questions that are asked of it. The file
-// that the generated accel.wgsl includes (accel/bvh.wgsl or accel/list.wgsl) has
+// that the generated accel.wgsl includes (accel/bvh.wgsl, accel/instances.wgsl or accel/list.wgsl) has
 //
 //   struct Traversal
 //   fn trace_begin(query: Query) -> Traversal
@@ -28,7 +28,8 @@ const MISS: u32 = 0xffffffffu;
 struct Hit {
   // Ray parameter, 0 < t <= t_max; the ray's t_max for a miss.
   t: f32,
-  // 2 x the index of its pair's element, + 1 for the second of the pair; or MISS.
+  // 2 x the index of its pair's element, + 1 for the second of the pair; or MISS. In an instance 2 x the
+  // pair's number there (accel/instance.wgsl).
   triangle: u32,
   // Barycentric coordinates of v0, v1, v2.
   b: vec3f,
@@ -93,8 +94,12 @@ fn pair_fan(pair: Element, setup: RaySetup) -> FanCandidates {
   return fan_candidates(setup, v.v0, v.v1, v.v2, v.v3);
 }
 
-// The hit of a ray on a triangle that it meets.
+// The hit of a ray on a triangle that it meets, in the space that the traversal is in.
 fn refined_hit_on(triangle: u32, setup: RaySetup) -> TriangleHit {
+  if (HAS_INSTANCES) {
+    let pair = load_element((triangle >> 1u) - element_shift);
+    return refined_hit(fan_triangle(pair_fan(pair, setup), (triangle & 1u) != 0u));
+  }
   let fan = pair_fan(load_element(triangle >> 1u), setup);
   return refined_hit(fan_triangle(fan, (triangle & 1u) != 0u));
 }

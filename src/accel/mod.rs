@@ -6,21 +6,29 @@
 //! [`Bvh::validate`] proves its structure, [`Bvh::sah_cost`] rates it, and [`Bvh::intersect`] and
 //! [`Bvh::occluded`] are the oracle of `shaders/accel/bvh.wgsl` and `shaders/accel/list.wgsl`, which
 //! do the same operations in the same order.
+//!
+//! Where instances share geometry, [`Bvh::build_two_level`] puts trees in spaces of their own below a tree over the
+//! world ([`Placement`], [`TwoLevel`]); `shaders/accel/instances.wgsl` traverses it.
 
 pub mod binary;
 mod cost;
 pub mod element;
+mod instance;
 mod list;
 pub mod pair;
 mod primitive;
 mod traverse;
+mod two_level;
 mod validate;
+mod validate_two_level;
 mod wide;
 
 pub use binary::Preset;
 pub use element::Element;
+pub use instance::{INSTANCE_FLAG, Instance, Placement, Tree};
 pub use primitive::Primitive;
 pub use traverse::{FAR_SLACK, Hit, Steps};
+pub use two_level::{TooManyNumbers, TwoLevel};
 pub use validate::BvhError;
 
 /// Most stack entries that any tree of [`Bvh::build`] makes a traversal use.
@@ -42,6 +50,47 @@ pub struct BuildOptions {
     /// Up to so many pairs are a list, more are a tree: with 0 it is always a tree. No triangles at
     /// all are a list in any case.
     pub list_limit: usize,
+    /// Which meshes' instances share geometry; for whoever decides what [`Bvh::build_two_level`] is given.
+    pub instancing: Instancing,
+}
+
+/// Which meshes' instances share geometry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Instancing {
+    /// Those for which it saves much memory.
+    #[default]
+    Auto,
+    /// None: each instance has its own copy.
+    Never,
+    /// All that can: for tests and measurements.
+    Always,
+}
+
+impl Instancing {
+    /// Its name: `auto`, `never` or `always`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Instancing::Auto => "auto",
+            Instancing::Never => "never",
+            Instancing::Always => "always",
+        }
+    }
+}
+
+impl std::fmt::Display for Instancing {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for Instancing {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Instancing, String> {
+        let all = [Instancing::Auto, Instancing::Never, Instancing::Always];
+        let found = all.into_iter().find(|i| i.name() == name);
+        found.ok_or_else(|| format!("expected auto, never or always, not \"{name}\""))
+    }
 }
 
 impl BuildOptions {
@@ -59,20 +108,27 @@ impl Default for BuildOptions {
         Self {
             preset: Preset::default(),
             list_limit: LIST_LIMIT,
+            instancing: Instancing::default(),
         }
     }
 }
 
 /// A bounding volume hierarchy over triangles, or a list of them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Bvh {
     /// A tree's nodes and pairs; element 0 is the root, a node; a node comes before its children.
     pub elements: Vec<Element>,
-    /// The triangles in the order of the tree.
+    /// The triangles in the order of the tree; of two levels, those of the world, then those of each tree.
     pub order: Vec<Placed>,
     /// Stack entries that a traversal needs: the nodes on the longest way down. 0 for a list: all
     /// elements are pairs, each to be tested by every ray.
     pub depth: u32,
+    /// Trees that instances share; none unless the structure has two levels.
+    pub trees: Vec<Tree>,
+    /// The instances, in the order of their numbers.
+    pub instances: Vec<Instance>,
+    /// With instances: rays start no farther from the world's origin than √3 times this, metres.
+    pub reach: f32,
 }
 
 /// A triangle of the input and its place in the tree.
@@ -101,8 +157,14 @@ impl Bvh {
         self.depth == 0
     }
 
+    /// Whether instances share trees.
+    pub fn has_instances(&self) -> bool {
+        !self.instances.is_empty()
+    }
+
     /// Position in [`Bvh::order`] of the triangle of a hit.
     pub fn position(&self, id: u32) -> usize {
-        self.elements[id as usize / 2].first_triangle() as usize + (id & 1) as usize
+        let (element, _) = self.resolve(id);
+        self.elements[element as usize].first_triangle() as usize + (id & 1) as usize
     }
 }

@@ -27,6 +27,7 @@
 #[cfg(doc)]
 use super::element::MARGIN;
 use super::element::{Element, WIDTH};
+use super::two_level::HEADER;
 use super::{Bvh, MAX_DEPTH, list};
 #[cfg(doc)]
 use crate::geometry::Aabb;
@@ -53,7 +54,7 @@ pub struct Hit {
     /// Ray parameter, 0 < t ≤ `t_max`.
     pub t: f32,
     /// The triangle: 2 × the index of its pair's element, + 1 for the second of the pair
-    /// ([`Bvh::position`]).
+    /// ([`Bvh::position`]); in an instance 2 × the pair's number there ([`Bvh::resolve`]).
     pub triangle: u32,
     /// Barycentric coordinates of v0, v1, v2.
     pub b: [f32; 3],
@@ -141,18 +142,32 @@ impl Bvh {
         if self.is_list() {
             return list::trace(&self.elements, ray, steps);
         }
-        let setup = RaySetup::new(ray.origin, ray.direction);
-        let box_setup = BoxSetup::new(ray);
-        let mut stack = [Group::default(); MAX_DEPTH as usize];
-        let mut stack_size = 0;
         let mut best = Hit {
             t: ray.t_max,
             triangle: MISS,
             b: [0.0; 3],
             back_face: false,
         };
+        self.trace_level(ray, (0, 0), any_hit, steps, &mut best);
+        (best.triangle != MISS).then_some(best)
+    }
+
+    /// Traverses the world, or an instance from its root: `(root, shift)`, where the numbers of hits are those of
+    /// the elements and so much more. The device does the same with one stack, on which it notes where to return.
+    fn trace_level(
+        &self,
+        ray: &Ray,
+        (root, shift): (u32, u32),
+        any_hit: bool,
+        steps: &mut Steps,
+        best: &mut Hit,
+    ) {
+        let setup = RaySetup::new(ray.origin, ray.direction);
+        let box_setup = BoxSetup::new(ray);
+        let mut stack = [Group::default(); MAX_DEPTH as usize];
+        let mut stack_size = 0;
         let mut group = Group::default();
-        let mut current = 0;
+        let mut current = root;
         'traversal: loop {
             let element = &self.elements[(current & !LEAF_FLAG) as usize];
             if current < LEAF_FLAG {
@@ -165,12 +180,20 @@ impl Bvh {
                     }
                     group = children;
                 }
+            } else if self.has_instances() && element.is_instance() {
+                // Counts as a node.
+                steps.nodes += 1;
+                let instance = &self.instances[self.instance_of(element)];
+                let inside = instance.placement.ray(ray);
+                let level = (element.words[12], element.words[14]);
+                self.trace_level(&inside, level, any_hit, steps, best);
             } else {
                 steps.pairs += 1;
-                test_pair(element, current & !LEAF_FLAG, &setup, &mut best);
-                if any_hit && best.triangle != MISS {
-                    break;
-                }
+                let number = (current & !LEAF_FLAG) + shift;
+                test_pair(element, number, &setup, best);
+            }
+            if any_hit && best.triangle != MISS {
+                break;
             }
             // Go on with the children that were put aside last.
             while !group.is_worth_it(best.t) {
@@ -182,7 +205,11 @@ impl Bvh {
             }
             current = group.take();
         }
-        (best.triangle != MISS).then_some(best)
+    }
+
+    /// Index of the instance that a leaf stands for.
+    fn instance_of(&self, leaf: &Element) -> usize {
+        (leaf.words[15] - self.elements[HEADER].words[0]) as usize
     }
 }
 
@@ -226,7 +253,7 @@ fn visit(element: &Element, setup: &BoxSetup, t_max: f32) -> Group {
     }
 }
 
-/// Tests both triangles of a pair and keeps the closest hit.
+/// Tests both triangles of a pair, which has this number, and keeps the closest hit.
 fn test_pair(element: &Element, index: u32, setup: &RaySetup, best: &mut Hit) {
     let fan = fan_candidates(setup, element.vertices());
     for slot in 0..2 {

@@ -1,6 +1,7 @@
 //! The proof that a structure is one that a traversal may trust: the device checks nothing.
 
 use super::element::Node;
+use super::two_level::HEADER;
 use super::{Bvh, MAX_DEPTH, MAX_TRIANGLES, Placed};
 use crate::geometry::Aabb;
 use glam::Vec3;
@@ -53,6 +54,14 @@ pub enum BvhError {
         "the tree says that a traversal needs {depth} stack entries, but it needs {needed} (at most {MAX_DEPTH} are allowed)"
     )]
     Depth { depth: u32, needed: u32 },
+    #[error("the upper level, the trees and the records of instances do not follow each other")]
+    Sections,
+    #[error(
+        "instance {instance}: its leaf, its record, its number or its box does not fit its placement"
+    )]
+    Instance { instance: usize },
+    #[error("the upper level has {leaves} instances, but there are {instances}")]
+    InstanceCount { leaves: usize, instances: usize },
 }
 
 /// Nodes, each after its parent, with their levels.
@@ -64,13 +73,24 @@ enum Found {
     No,
     Node,
     Pair,
+    Instance,
+    Header,
 }
 
 impl Bvh {
     /// Checks everything that a traversal relies on, in O(n): indices in range, no cycles, every
     /// triangle in exactly one pair, every box around the padded bounds of its triangles with a margin,
-    /// the depth. `triangles` are those that it was built of, in their own order.
+    /// the depth; with instances each once, its box around its tree. `triangles` are those that it was built of, in
+    /// their own order.
     pub fn validate(&self, triangles: &[[Vec3; 3]]) -> Result<(), BvhError> {
+        match self.has_instances() {
+            true => self.validate_two_level(triangles),
+            false => self.validate_level(triangles),
+        }
+    }
+
+    /// The same for a structure of one level, or for the upper one of two alone.
+    pub(super) fn validate_level(&self, triangles: &[[Vec3; 3]]) -> Result<(), BvhError> {
         self.check_order(triangles)?;
         if self.is_list() {
             return self.check_list(triangles);
@@ -81,7 +101,20 @@ impl Bvh {
         let (way, found) = self.walk()?;
         self.check_places(&found)?;
         self.check_depth(&way)?;
-        self.check_boxes(&way, triangles)
+        self.check_instance_count(&found)?;
+        self.check_boxes(&way, &found, triangles)
+    }
+
+    fn check_instance_count(&self, found: &[Found]) -> Result<(), BvhError> {
+        let leaves = (0..found.len()).filter(|&leaf| found[leaf] == Found::Instance);
+        let mut named: Vec<u32> = leaves.map(|leaf| self.elements[leaf].words[15]).collect();
+        named.sort_unstable();
+        named.dedup();
+        let (leaves, instances) = (named.len(), self.instances.len());
+        match leaves == instances {
+            true => Ok(()),
+            false => Err(BvhError::InstanceCount { leaves, instances }),
+        }
     }
 
     fn check_list(&self, triangles: &[[Vec3; 3]]) -> Result<(), BvhError> {
@@ -114,6 +147,9 @@ impl Bvh {
         let elements = self.elements.len();
         let mut found = vec![Found::No; elements];
         found[0] = Found::Node;
+        if self.has_instances() {
+            found[HEADER] = Found::Header;
+        }
         let mut way = vec![(0, 1)];
         let mut next = 0;
         while let Some(&(node, level)) = way.get(next) {
@@ -126,7 +162,13 @@ impl Bvh {
                 if *kind != Found::No {
                     return Err(BvhError::SharedChild { node, child });
                 }
-                *kind = Found::Pair;
+                let is_instance =
+                    self.has_instances() && self.elements[child as usize].is_instance();
+                *kind = if is_instance {
+                    Found::Instance
+                } else {
+                    Found::Pair
+                };
                 if slot < decoded.inner {
                     *kind = Found::Node;
                     way.push((child as usize, level + 1));
@@ -160,14 +202,22 @@ impl Bvh {
     }
 
     /// Goes up from the leaves: children come after their parents on the way.
-    fn check_boxes(&self, way: &[(usize, u32)], triangles: &[[Vec3; 3]]) -> Result<(), BvhError> {
+    fn check_boxes(
+        &self,
+        way: &[(usize, u32)],
+        found: &[Found],
+        triangles: &[[Vec3; 3]],
+    ) -> Result<(), BvhError> {
         let mut exact = vec![Aabb::EMPTY; self.elements.len()];
         for &(node, _) in way.iter().rev() {
             let decoded = self.elements[node].decode();
             for slot in 0..decoded.children {
                 let child = decoded.first + slot;
                 if slot >= decoded.inner {
-                    exact[child as usize] = self.pair_bounds(child, triangles)?;
+                    exact[child as usize] = match found[child as usize] {
+                        Found::Instance => self.instance_bounds(child as usize)?,
+                        _ => self.pair_bounds(child, triangles)?,
+                    };
                 }
                 let bounds = exact[child as usize];
                 if !decoded.holds(slot as usize, &bounds.padded()) {

@@ -20,15 +20,7 @@ impl Bvh {
             return list(&pairs, triangles);
         }
         let tree = BinaryTree::build(&primitives(&pairs, triangles), options.preset);
-        let topology = tree.collapse();
-        let emission = Emission {
-            first_child: first_children(&topology),
-            topology: &topology,
-            tree: &tree,
-            pairs: &pairs,
-            triangles,
-        };
-        emission.run()
+        Emission::new(tree, pairs, triangles, 0, 0).run(&[])
     }
 }
 
@@ -49,11 +41,12 @@ fn list(pairs: &[Pair], triangles: &[[Vec3; 3]]) -> Bvh {
         elements,
         order,
         depth: 0,
+        ..Bvh::default()
     }
 }
 
 /// One box a pair.
-fn primitives(pairs: &[Pair], triangles: &[[Vec3; 3]]) -> Vec<Primitive> {
+pub(super) fn primitives(pairs: &[Pair], triangles: &[[Vec3; 3]]) -> Vec<Primitive> {
     let primitive = |(i, pair): (usize, &Pair)| {
         // Adding 0 turns -0 into +0, so that no minimum depends on the order of its arguments.
         let vertices = pair.vertices(triangles).map(|v| v + Vec3::ZERO);
@@ -69,9 +62,9 @@ fn primitives(pairs: &[Pair], triangles: &[[Vec3; 3]]) -> Vec<Primitive> {
 const CHUNK: usize = 1 << 12;
 
 /// The element that is the first child of each wide node: the children of all nodes follow each
-/// other, after the root.
-fn first_children(topology: &WideTopology) -> Vec<u32> {
-    let mut next = 1;
+/// other, after the root and a gap.
+fn first_children(topology: &WideTopology, gap: u32) -> Vec<u32> {
+    let mut next = 1 + gap;
     let first = |node: &WideChildren| {
         let first = next;
         next += node.children().len() as u32;
@@ -83,13 +76,33 @@ fn first_children(topology: &WideTopology) -> Vec<u32> {
 }
 
 /// Everything that elements are made of.
-struct Emission<'a> {
-    topology: &'a WideTopology,
-    tree: &'a BinaryTree,
-    pairs: &'a [Pair],
+pub(super) struct Emission<'a> {
+    topology: WideTopology,
+    tree: BinaryTree,
+    pairs: Vec<Pair>,
     triangles: &'a [[Vec3; 3]],
+    /// Leaves that are no pairs: boxes of the tree with indices from the number of pairs on.
+    others: usize,
+    /// Elements that are left free after the root.
+    gap: u32,
     /// The first child of each wide node, an element.
     first_child: Vec<u32>,
+}
+
+/// What is in a leaf.
+enum Leaf {
+    Pair(Pair),
+    /// Index of one of the other leaves.
+    Other(usize),
+}
+
+impl Leaf {
+    fn triangles(&self) -> usize {
+        match self {
+            Leaf::Pair(pair) => pair.triangles().count(),
+            Leaf::Other(_) => 0,
+        }
+    }
 }
 
 /// The children of some wide nodes: room to write them to.
@@ -101,30 +114,57 @@ struct Chunk<'a> {
     position: u32,
 }
 
-impl Emission<'_> {
-    fn run(&self) -> Bvh {
-        let count = self.topology.nodes.len() + self.pairs.len();
+impl<'a> Emission<'a> {
+    /// From a tree over the boxes of some pairs and then of so many other leaves.
+    pub fn new(
+        tree: BinaryTree,
+        pairs: Vec<Pair>,
+        triangles: &'a [[Vec3; 3]],
+        others: usize,
+        gap: u32,
+    ) -> Self {
+        let topology = tree.collapse();
+        Self {
+            first_child: first_children(&topology, gap),
+            topology,
+            tree,
+            pairs,
+            triangles,
+            others,
+            gap,
+        }
+    }
+
+    pub fn element_count(&self) -> usize {
+        self.topology.nodes.len() + self.gap as usize + self.pairs.len() + self.others
+    }
+
+    /// Writes everything, with the other leaves as given.
+    pub fn run(&self, others: &[Element]) -> Bvh {
+        let count = self.element_count();
         // Filled by all threads, since the first touch of memory takes time.
         let void = Element { words: [0; 16] };
         let mut elements: Vec<Element> = rayon::iter::repeat_n(void, count).collect();
         let mut order: Vec<Placed> =
             rayon::iter::repeat_n(Placed::VOID, self.triangles.len()).collect();
         elements[0] = self.node(0);
-        let chunks = self.chunks(&mut elements[1..], &mut order);
-        chunks.into_par_iter().for_each(|chunk| self.write(chunk));
+        let chunks = self.chunks(&mut elements[1 + self.gap as usize..], &mut order);
+        let write = |chunk| self.write(chunk, others);
+        chunks.into_par_iter().for_each(write);
         Bvh {
             elements,
             order,
             depth: self.topology.depth,
+            ..Bvh::default()
         }
     }
 
     /// Shares out the room.
-    fn chunks<'a>(
+    fn chunks<'b>(
         &self,
-        mut elements: &'a mut [Element],
-        mut order: &'a mut [Placed],
-    ) -> Vec<Chunk<'a>> {
+        mut elements: &'b mut [Element],
+        mut order: &'b mut [Placed],
+    ) -> Vec<Chunk<'b>> {
         let count = self.topology.nodes.len();
         let ranges: Vec<Range<usize>> = (0..count)
             .step_by(CHUNK)
@@ -148,7 +188,7 @@ impl Emission<'_> {
     /// The children of wide nodes, and the triangles in these.
     fn sizes(&self, nodes: Range<usize>) -> (usize, usize) {
         let children = self.topology.nodes[nodes].iter().map(|n| n.children());
-        let triangles = |&child: &u32| self.pair(child).map_or(0, |p| p.triangles().count());
+        let triangles = |&child: &u32| self.leaf(child).map_or(0, |leaf| leaf.triangles());
         children.fold((0, 0), |(all, sum), children| {
             let here: usize = children.iter().map(triangles).sum();
             (all + children.len(), sum + here)
@@ -156,25 +196,37 @@ impl Emission<'_> {
     }
 
     /// What a child is if it is a leaf.
-    fn pair(&self, child: u32) -> Option<Pair> {
+    fn leaf(&self, child: u32) -> Option<Leaf> {
         let node = &self.tree.nodes[child as usize];
-        node.is_leaf().then(|| self.pairs[node.index as usize])
+        let index = node.index as usize;
+        let leaf = || match self.pairs.get(index) {
+            Some(pair) => Leaf::Pair(*pair),
+            None => Leaf::Other(index - self.pairs.len()),
+        };
+        node.is_leaf().then(leaf)
     }
 
-    /// Nodes first, then pairs.
-    fn write(&self, chunk: Chunk) {
+    /// Nodes first, then leaves.
+    fn write(&self, chunk: Chunk, others: &[Element]) {
         let first = self.first_child[chunk.nodes.start];
         let mut elements = chunk.elements.iter_mut().zip(first..);
         let mut order = chunk.order.iter_mut();
         let mut position = chunk.position;
         for node in &self.topology.nodes[chunk.nodes] {
-            let pairs = node.children().iter().filter_map(|&child| self.pair(child));
-            let inner = node.children().len() - pairs.clone().count();
+            let leaves = node.children().iter().filter_map(|&child| self.leaf(child));
+            let inner = node.children().len() - leaves.clone().count();
             let nodes = node.first_inner..node.first_inner + inner as u32;
             for (wide, (element, _)) in nodes.zip(elements.by_ref()) {
                 *element = self.node(wide as usize);
             }
-            for (pair, (element, index)) in pairs.zip(elements.by_ref()) {
+            for (leaf, (element, index)) in leaves.zip(elements.by_ref()) {
+                let pair = match leaf {
+                    Leaf::Pair(pair) => pair,
+                    Leaf::Other(other) => {
+                        *element = others[other];
+                        continue;
+                    }
+                };
                 *element = Element::pair(pair.vertices(self.triangles), position);
                 let turned = (2 * index..).zip(pair.triangles());
                 for ((id, turned), placed) in turned.zip(order.by_ref()) {

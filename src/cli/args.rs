@@ -8,7 +8,7 @@ use super::camera::CameraArgs;
 use super::environment::EnvironmentArg;
 use super::load::LoadArgs;
 use super::parse;
-use crate::accel::Preset;
+use crate::accel::{Instancing, Preset};
 use crate::image::ToneMap;
 use crate::render::LightSelection;
 use crate::scene::Selector;
@@ -67,6 +67,11 @@ pub struct RenderArgs {
     /// at the point in question) [default: tree, unless lamps are few]
     #[arg(long, value_name = "NAME")]
     pub lights: Option<LightSelection>,
+
+    /// Whether instances of a mesh share its geometry: auto (where that saves much memory; rays then
+    /// take longer), never, always
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub instancing: Instancing,
 
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -6,13 +6,13 @@ use anyhow::{Context, Result};
 use clap::Args;
 use serde::Serialize;
 
-use super::bvh_report::BvhReport;
+use super::bvh_report::{BvhReport, InstancingReport};
 use super::exit::Exit;
 use super::lights_report::LightsReport;
 use super::load::LoadArgs;
 use super::{info_text, message};
-use crate::accel::{BuildOptions, Preset};
-use crate::render::Prepared;
+use crate::accel::{BuildOptions, Instancing, Preset};
+use crate::render::{Prepared, Sharing};
 use crate::scene::{Scene, Summary, gltf};
 
 /// Arguments of `etendue info`.
@@ -30,6 +30,11 @@ pub struct InfoArgs {
     #[arg(long, value_name = "NAME")]
     bvh: Option<Preset>,
 
+    /// Whether instances of a mesh share its geometry: auto (where that saves much memory), never,
+    /// always
+    #[arg(long, value_name = "NAME", default_value_t)]
+    instancing: Instancing,
+
     /// Print it as JSON
     #[arg(long)]
     json: bool,
@@ -45,11 +50,19 @@ pub fn run(args: &InfoArgs) -> Result<Exit> {
     valid.with_context(|| args.file.display().to_string())?;
     let described = Described {
         summary: Summary::of(&scene),
-        built: args.bvh.map(|preset| build(&scene, preset)).transpose()?,
+        instancing: InstancingReport::of(&scene, &Sharing::of(&scene, args.instancing)),
+        built: args
+            .bvh
+            .map(|preset| build(&scene, preset, args))
+            .transpose()?,
     };
     let text = match args.json {
         true => serde_json::to_string_pretty(&described)? + "\n",
-        false => info_text::describe(&described.summary, described.built.as_ref()),
+        false => info_text::describe(
+            &described.summary,
+            &described.instancing,
+            described.built.as_ref(),
+        ),
     };
     message::print(&text).map(|()| Exit::Fine)
 }
@@ -58,6 +71,7 @@ pub fn run(args: &InfoArgs) -> Result<Exit> {
 struct Described {
     #[serde(flatten)]
     summary: Summary,
+    instancing: InstancingReport,
     #[serde(flatten)]
     built: Option<Built>,
 }
@@ -71,9 +85,13 @@ pub struct Built {
     pub light_selection: LightsReport,
 }
 
-fn build(scene: &Scene, preset: Preset) -> Result<Built> {
+fn build(scene: &Scene, preset: Preset, args: &InfoArgs) -> Result<Built> {
+    let options = BuildOptions {
+        instancing: args.instancing,
+        ..BuildOptions::of(preset)
+    };
     // The camera is the origin only; the loader sees to it that there is one.
-    let prepared = Prepared::new(scene, 0, &BuildOptions::of(preset))?;
+    let prepared = Prepared::new(scene, 0, &options)?;
     Ok(Built {
         bvh: BvhReport::new(preset, &prepared),
         light_selection: LightsReport::new(&prepared),

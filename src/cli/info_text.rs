@@ -3,6 +3,7 @@
 //! Names come from the file and are shown quoted and escaped, so that none of them disturbs a
 //! terminal.
 
+use super::bvh_report::InstancingReport;
 use super::info::Built;
 use crate::scene::{FeatureReason, Summary};
 
@@ -10,8 +11,8 @@ use crate::scene::{FeatureReason, Summary};
 type Rows = Vec<Vec<String>>;
 
 /// The whole text.
-pub fn describe(summary: &Summary, built: Option<&Built>) -> String {
-    let mut text = overview(summary);
+pub fn describe(summary: &Summary, instancing: &InstancingReport, built: Option<&Built>) -> String {
+    let mut text = overview(summary, instancing);
     text += &table(
         "acceleration structure",
         built.map_or(vec![], |built| built.bvh.rows()),
@@ -33,7 +34,7 @@ pub fn describe(summary: &Summary, built: Option<&Built>) -> String {
     text
 }
 
-fn overview(s: &Summary) -> String {
+fn overview(s: &Summary, instancing: &InstancingReport) -> String {
     let scene = match s.scenes.get(s.scene_index) {
         Some(name) => format!("{} {name:?} of {}", s.scene_index, s.scenes.len()),
         None => "the file names none: all of it".into(),
@@ -54,6 +55,7 @@ fn overview(s: &Summary) -> String {
             "meshes",
             format!("{}, placed {} times", s.meshes, s.instances),
         ),
+        row("instances", instancing.describe()),
         row("bounds", bounds),
         row("BLAKE3", s.hash.clone()),
     ];

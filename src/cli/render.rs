@@ -45,7 +45,10 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     // From files to buffers and a kernel on the device.
     let ((mut scene, mut settings), device) = load_and_open(args, &mut time, &mut warnings)?;
     settings.doublewords = stage("probe", || device.prefers_doublewords(library.cache()))?;
-    let options = BuildOptions::of(args.bvh);
+    let options = BuildOptions {
+        instancing: args.instancing,
+        ..BuildOptions::of(args.bvh)
+    };
     let prepared = timed(&mut time.accel, || {
         Prepared::with_lights(&scene, settings.camera, &options, args.lights)
     })?;

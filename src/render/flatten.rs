@@ -2,8 +2,11 @@
 //!
 //! Transforms are applied in f64 and positions are taken relative to the camera before they are
 //! rounded to f32, so a scene far from the origin keeps its precision where the picture is taken.
+//!
+//! Geometry that instances share ([`Sharing`]) comes after that, once, each tree in a space of its own.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
@@ -12,15 +15,21 @@ use super::layout::{
     MATERIAL_INDEX_MASK, TRIANGLE_ALPHA, TRIANGLE_COLORS, TRIANGLE_FLAT, TRIANGLE_SINGLE_SIDED,
     TRIANGLE_TANGENTS,
 };
+use super::sharing::Sharing;
 use super::vertex_format::VertexFormat;
 use crate::accel::Placed;
-use crate::scene::{AlphaMode, Instance, Material, Mesh, Scene};
+use crate::geometry::Aabb;
+use crate::scene::{AlphaMode, Material, Mesh, Scene};
 
-/// All triangles of a scene, in the order of instances and their indices.
+/// All triangles of a scene, in the order of instances and their indices; then those of shared trees.
 #[derive(Debug, Clone, Default)]
 pub struct FlatGeometry {
-    /// Vertices relative to the origin that was asked for; all finite.
+    /// Vertices relative to the origin that was asked for, or in the space of a tree; all finite.
     pub triangles: Vec<[Vec3; 3]>,
+    /// How many of them are in the world.
+    pub world: usize,
+    /// The triangles of each shared tree.
+    pub trees: Vec<Range<usize>>,
     /// Indices into the vertices of `words`, three a triangle.
     pub indices: Vec<[u32; 3]>,
     /// Material of each triangle, and its `TRIANGLE_*` bits.
@@ -37,38 +46,40 @@ impl FlatGeometry {
         (self.attributes[triangle] & MATERIAL_INDEX_MASK) as usize
     }
 
-    /// Flattens a validated scene around `origin` (metres, world).
-    pub fn new(scene: &Scene, format: &VertexFormat, origin: DVec3) -> Self {
+    /// Flattens what is not shared of a validated scene around `origin` (metres, world), and adds what is.
+    pub fn new(scene: &Scene, format: &VertexFormat, origin: DVec3, sharing: &Sharing) -> Self {
         let mut flat = Self::default();
-        let count = scene
-            .instances
-            .iter()
-            .map(|i| scene.meshes[i.mesh].indices.len())
-            .sum();
-        flat.triangles.reserve_exact(count);
-        flat.indices.reserve_exact(count);
-        flat.attributes.reserve_exact(count);
-        for instance in &scene.instances {
-            let mesh = &scene.meshes[instance.mesh];
-            flat.add(
-                instance,
-                mesh,
-                &scene.materials[mesh.material],
-                format,
-                origin,
-            );
+        let (count, _) = sharing.counts(scene);
+        flat.triangles.reserve_exact(count as usize);
+        flat.indices.reserve_exact(count as usize);
+        flat.attributes.reserve_exact(count as usize);
+        let alone = scene.instances.iter().zip(&sharing.is_shared);
+        for (instance, _) in alone.filter(|(_, shared)| !**shared) {
+            let to_world = |p: DVec3| instance.to_world.transform_point3(p) - origin;
+            let linear = DMat3::from_mat4(instance.to_world);
+            flat.add(scene, instance.mesh, format, to_world, &linear);
+        }
+        flat.world = flat.triangles.len();
+        for tree in &sharing.trees {
+            let start = flat.triangles.len();
+            for &mesh in &tree.meshes {
+                flat.add(scene, mesh, format, |p| tree.point(p), &DMat3::IDENTITY);
+            }
+            flat.trees.push(start..flat.triangles.len());
         }
         flat
     }
 
+    /// Adds a mesh whose points and directions are placed by a function and its linear part.
     fn add(
         &mut self,
-        instance: &Instance,
-        mesh: &Mesh,
-        material: &Material,
+        scene: &Scene,
+        mesh: usize,
         format: &VertexFormat,
-        origin: DVec3,
+        place: impl Fn(DVec3) -> DVec3 + Sync,
+        linear: &DMat3,
     ) {
+        let mesh = &scene.meshes[mesh];
         let first_vertex = self
             .words
             .len()
@@ -77,11 +88,10 @@ impl FlatGeometry {
         let positions: Vec<Vec3> = mesh
             .positions
             .par_iter()
-            .map(|p| (instance.to_world.transform_point3(p.as_dvec3()) - origin).as_vec3())
+            .map(|p| place(p.as_dvec3()).as_vec3())
             .collect();
-        let linear = DMat3::from_mat4(instance.to_world);
         let mirrored = linear.determinant() < 0.0;
-        let flags = triangle_flags(mesh, material, format);
+        let flags = triangle_flags(mesh, &scene.materials[mesh.material], format);
         // A mirror turns windings round: the front stays the front.
         let turned = |&[a, b, c]: &[u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
         let is_finite = |corners: &[u32; 3]| {
@@ -101,7 +111,7 @@ impl FlatGeometry {
         let attributes = mesh.material as u32 | flags;
         self.attributes
             .par_extend(rayon::iter::repeat_n(attributes, kept.len()));
-        format.append(&mut self.words, mesh, &linear);
+        format.append(&mut self.words, mesh, linear);
     }
 
     /// The triangles in the order of a tree, with their vertices turned as they are there.
@@ -114,15 +124,19 @@ impl FlatGeometry {
         self.attributes = order.par_iter().map(attributes).collect();
     }
 
-    /// Radius of a sphere around the middle of the bounds that holds everything, metres.
-    pub fn radius(&self) -> f64 {
+    /// Radius of a sphere around the middle of the bounds that holds everything, metres: the triangles of the world and
+    /// some boxes.
+    pub fn radius(&self, boxes: impl Iterator<Item = Aabb>) -> f64 {
         let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let add =
             |(low, high): (DVec3, DVec3), v: &Vec3| (low.min(v.as_dvec3()), high.max(v.as_dvec3()));
         let both = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
-        let vertices = self.triangles.as_flattened().par_iter();
-        let (low, high) = vertices.fold(nothing, add).reduce(nothing, both);
-        if self.triangles.is_empty() {
+        // In the order of a tree, that of the world is the first.
+        let vertices = self.triangles[..self.world].as_flattened().par_iter();
+        let world = vertices.fold(nothing, add).reduce(nothing, both);
+        let boxes = boxes.map(|b| (b.min.as_dvec3(), b.max.as_dvec3()));
+        let (low, high) = boxes.fold(world, both);
+        if low.x > high.x {
             return 0.0;
         }
         0.5 * (high - low).length()

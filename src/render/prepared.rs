@@ -16,9 +16,10 @@ use super::light_selection::LightSelection;
 use super::lights::{LightList, Lights, position, punctual};
 use super::materials::materials;
 use super::media::media_around;
+use super::sharing::Sharing;
 use super::textures::TextureSet;
-use super::vertex_format::{VertexFormat, VertexNeeds};
-use crate::accel::{BuildOptions, Bvh, Placed};
+use super::vertex_format::VertexFormat;
+use crate::accel::{BuildOptions, Bvh, Placed, TwoLevel};
 use crate::host::stages::{stage, timed_stage};
 use crate::scene::{EnvironmentImage, Features, LightKind, Material, PunctualLight, Scene};
 
@@ -36,6 +37,8 @@ pub struct Prepared {
     pub bvh: Bvh,
     /// Wall time of its build, the stage `bvh`.
     pub bvh_time: Duration,
+    /// Which instances share geometry.
+    pub sharing: Sharing,
     /// Vertex indices of each triangle.
     pub indices: Vec<[u32; 3]>,
     /// Vertex attributes.
@@ -83,21 +86,32 @@ impl Prepared {
         options: &BuildOptions,
         wish: Option<LightSelection>,
     ) -> Result<Self, RenderError> {
-        check_counts(scene)?;
         let features = Features::of(scene);
-        let vertex_format = VertexFormat::new(VertexNeeds {
-            normals: features.normals,
-            tangents: features.tangents,
-            uv0: features.uv0,
-            uv1: features.uv1,
-            colors: features.colors,
-        });
+        let vertex_format = VertexFormat::of(&features);
         let origin = scene.cameras[camera].to_world.w_axis.truncate();
-        let flatten = || FlatGeometry::new(scene, &vertex_format, origin);
+        let sharing = Sharing::new(scene, vertex_format.stride, origin, options.instancing);
+        check_counts(scene, &sharing)?;
+        let flatten = || FlatGeometry::new(scene, &vertex_format, origin, &sharing);
         let mut flat = stage("flatten", flatten);
-        let options = options_for(&flat.triangles, options);
-        let build = || Bvh::build(&flat.triangles, &options);
-        let (mut bvh, bvh_time) = timed_stage("bvh", build);
+        let options = options_for(&flat.triangles[..flat.world], options);
+        let input = TwoLevel {
+            triangles: &flat.triangles,
+            world: flat.world,
+            trees: &flat.trees,
+            placements: &sharing.placements,
+            // The camera's position is the origin. An orthographic ray that meets something starts no farther from it
+            // than what it meets is: where it starts it is the nearest to the camera. A lens adds its radius.
+            reach: scene.cameras[camera]
+                .lens
+                .map_or(0.0, |lens| lens.radius as f32),
+        };
+        let build = || Bvh::build_two_level(&input, &options);
+        let (built, bvh_time) = timed_stage("bvh", build);
+        let mut bvh = built.map_err(|error| RenderError::TooMany {
+            what: "nodes and triangles in instances that share geometry, each counted where it is placed",
+            count: error.count,
+            limit: error.limit,
+        })?;
         flat.reorder(&bvh.order);
         let mut textures = TextureSet::default();
         let bsdf_tables = stage("albedos", || BsdfTables::new(scene, &features));
@@ -108,8 +122,11 @@ impl Prepared {
             add_triangle_lights(&mut lights, scene, &flat, &vertex_format, &bvh.order);
         attach(&mut bvh, &flat, &triangle_lights);
         let (near, lost) = punctual_lights(scene, origin);
+        let boxes = bvh.instances.iter().map(|i| i.bounds);
+        // In a scene without extent any radius will do.
+        let radius = flat.radius(boxes).max(f64::MIN_POSITIVE);
         let environment_light =
-            add_other_lights(&mut lights, scene, &near, origin, &flat, &environment);
+            add_other_lights(&mut lights, scene, &near, origin, radius, &environment);
         let lights = lights.finish(wish);
         let mut warnings = warnings(flat.dropped, lost);
         warnings.extend(unmet_wish(wish, &lights));
@@ -119,6 +136,7 @@ impl Prepared {
             bvh,
             bvh_time,
             warnings,
+            sharing,
             indices: flat.indices,
             vertex_words: flat.words,
             vertex_format,
@@ -161,22 +179,23 @@ fn is_sliver(triangle: &[Vec3; 3]) -> bool {
 /// up to here, and count two sides of a mirrored texture in 24 bits.
 const MAX_SIDE: u64 = 1 << 22;
 
-fn check_counts(scene: &Scene) -> Result<(), RenderError> {
+fn check_counts(scene: &Scene, sharing: &Sharing) -> Result<(), RenderError> {
     let check = |what, count: u64, limit: u64| {
         if count > limit {
             return Err(RenderError::TooMany { what, count, limit });
         }
         Ok(())
     };
-    check("triangles", scene.triangle_count(), MAX_TRIANGLES)?;
+    let (triangles, vertices) = sharing.counts(scene);
+    let placed = sharing.placements.len() as u64;
+    let what = match placed {
+        0 => "triangles",
+        _ => "triangles in memory and instances, of which each counts twice",
+    };
+    check(what, triangles + 2 * placed, MAX_TRIANGLES)?;
     let materials = scene.materials.len() as u64;
     let limit = u64::from(layout::MATERIAL_INDEX_MASK) + 1;
     check("materials", materials, limit)?;
-    let vertices = scene
-        .instances
-        .iter()
-        .map(|i| scene.meshes[i.mesh].positions.len() as u64)
-        .sum();
     // A vertex has at most 15 words, counted in 32 bits.
     check("vertices", vertices, u64::from(u32::MAX) / 15)?;
     let sides = scene.images.iter().flat_map(|i| [i.width, i.height]);
@@ -264,11 +283,9 @@ fn add_other_lights(
     scene: &Scene,
     punctual: &[&PunctualLight],
     origin: DVec3,
-    flat: &FlatGeometry,
+    radius: f64,
     table: &EnvironmentTable,
 ) -> u32 {
-    // In a scene without extent any radius will do.
-    let radius = flat.radius().max(f64::MIN_POSITIVE);
     // Those that are somewhere come first.
     for directional in [false, true] {
         for (i, light) in punctual.iter().enumerate() {

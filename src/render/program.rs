@@ -74,6 +74,8 @@ pub fn accel_files(bvh: &Bvh) -> VirtualFiles {
     if bvh.is_list() {
         let pairs = ("list.wgsl".into(), list_wgsl(&bvh.elements));
         VirtualFiles::from([include("list"), pairs])
+    } else if bvh.has_instances() {
+        VirtualFiles::from([include("instances")])
     } else {
         VirtualFiles::from([include("bvh")])
     }
@@ -150,6 +152,7 @@ pub fn constants(
     let mut list = feature_constants(&scene.features);
     list.extend(stack_constants(scene.bvh.depth, workgroup_bytes));
     list.extend([
+        ("HAS_INSTANCES", Constant::Bool(scene.bvh.has_instances())),
         (
             "HAS_LIGHT_TRIANGLES",
             Constant::Bool(scene.lights.has_triangles() || asked(&["emissive"])),

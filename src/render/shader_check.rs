@@ -1,6 +1,6 @@
 //! The kernels that `etendue shaders check` and the tests compile, without any device or scene.
 
-use glam::Vec3;
+use glam::{DMat3, DVec3, Vec3};
 
 use super::error::RenderError;
 use super::paged::large_arrays_wgsl;
@@ -8,7 +8,7 @@ use super::program::{
     self, Constant, ENTRY_FILE, feature_constants, features_wgsl, stack_constants,
 };
 use super::settings::Settings;
-use crate::accel::{BuildOptions, Bvh, MAX_DEPTH};
+use crate::accel::{BuildOptions, Bvh, MAX_DEPTH, Placement, TwoLevel};
 use crate::scene::Features;
 use crate::shader::{Check, CompileOptions, ShaderLibrary, StructLayout, VirtualFiles};
 
@@ -23,32 +23,52 @@ pub struct Variant {
     pub pages: usize,
     /// Whether bounds are checked.
     pub checked: bool,
-    /// Whether the acceleration structure is a list instead of a tree.
-    pub list: bool,
+    /// The acceleration structure.
+    pub structure: Structure,
+}
+
+/// Kinds of acceleration structures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Structure {
+    /// One tree.
+    Tree,
+    /// A list of pairs.
+    List,
+    /// A tree with instances of another.
+    Instances,
 }
 
 /// The extremes: nothing and everything, each as it is rendered by default, and split over pages
-/// with bounds checks; and both in a scene so small that it is a list.
+/// with bounds checks; and both in a scene so small that it is a list, and with instances.
 pub fn variants() -> Vec<Variant> {
-    let variant = |name, on, pages, checked, list| Variant {
+    use Structure::{Instances, List, Tree};
+    let variant = |name, on, pages, checked, structure| Variant {
         name,
-        constants: constants(on),
+        constants: constants(on, structure),
         pages,
         checked,
-        list,
+        structure,
     };
     vec![
-        variant("no feature", false, 1, false, false),
-        variant("every feature", true, 1, false, false),
-        variant("no feature, paged, checked", false, 3, true, false),
-        variant("every feature, paged, checked", true, 3, true, false),
-        variant("no feature, list", false, 1, false, true),
-        variant("every feature, list, paged, checked", true, 3, true, true),
+        variant("no feature", false, 1, false, Tree),
+        variant("every feature", true, 1, false, Tree),
+        variant("no feature, paged, checked", false, 3, true, Tree),
+        variant("every feature, paged, checked", true, 3, true, Tree),
+        variant("no feature, list", false, 1, false, List),
+        variant("every feature, list, paged, checked", true, 3, true, List),
+        variant("no feature, instances", false, 1, false, Instances),
+        variant(
+            "every feature, instances, paged, checked",
+            true,
+            3,
+            true,
+            Instances,
+        ),
     ]
 }
 
 /// All generated constants, as of a scene with nothing or with everything.
-pub fn constants(on: bool) -> Vec<(&'static str, Constant)> {
+pub fn constants(on: bool, structure: Structure) -> Vec<(&'static str, Constant)> {
     let mut constants = feature_constants(&Features::default());
     for (_, value) in &mut constants {
         *value = Constant::Bool(on);
@@ -56,6 +76,10 @@ pub fn constants(on: bool) -> Vec<(&'static str, Constant)> {
     // With everything on the tree is too deep for the workgroup's memory.
     constants.extend(stack_constants(if on { MAX_DEPTH } else { 1 }, 16 << 10));
     constants.extend([
+        (
+            "HAS_INSTANCES",
+            Constant::Bool(structure == Structure::Instances),
+        ),
         ("HAS_LIGHT_TRIANGLES", Constant::Bool(on)),
         ("HAS_PUNCTUAL_LIGHTS", Constant::Bool(on)),
         ("HAS_SEVERAL_LIGHTS", Constant::Bool(on)),
@@ -88,19 +112,36 @@ pub fn virtual_files(
     let features = features_wgsl(&variant.constants);
     files.insert("features.wgsl".into(), features);
     files.insert("buffers.wgsl".into(), large_arrays_wgsl(variant.pages));
-    files.extend(program::accel_files(&small_structure(variant.list)));
+    files.extend(program::accel_files(&small_structure(variant.structure)));
     Ok(files)
 }
 
 /// A structure over two pairs that share an edge.
-fn small_structure(list: bool) -> Bvh {
+fn small_structure(structure: Structure) -> Bvh {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::ONE, Vec3::Y, Vec3::NEG_X];
     let triangle = |i: usize| [corners[0], corners[i], corners[i + 1]];
+    let triangles = [triangle(1), triangle(2), triangle(3)];
     let options = BuildOptions {
-        list_limit: if list { usize::MAX } else { 0 },
+        list_limit: if structure == Structure::List {
+            usize::MAX
+        } else {
+            0
+        },
         ..BuildOptions::default()
     };
-    Bvh::build(&[triangle(1), triangle(2), triangle(3)], &options)
+    if structure != Structure::Instances {
+        return Bvh::build(&triangles, &options);
+    }
+    let placement = Placement::new(0, DMat3::IDENTITY, DVec3::ZERO);
+    let all = 0..triangles.len();
+    let input = TwoLevel {
+        triangles: &triangles,
+        world: 0,
+        trees: std::slice::from_ref(&all),
+        placements: placement.as_slice(),
+        reach: 1.0,
+    };
+    Bvh::build_two_level(&input, &options).expect("a small structure")
 }
 
 /// Every integrator with the default sampler and every sampler with the default integrator would

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
-use crate::scene::Mesh;
+use crate::scene::{Features, Mesh};
 
 /// Offsets, in words of 4 bytes, of each attribute inside a vertex; `None` if no vertex carries it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -38,6 +38,17 @@ pub struct VertexNeeds {
 }
 
 impl VertexFormat {
+    /// For a scene with some features.
+    pub fn of(features: &Features) -> Self {
+        Self::new(VertexNeeds {
+            normals: features.normals,
+            tangents: features.tangents,
+            uv0: features.uv0,
+            uv1: features.uv1,
+            colors: features.colors,
+        })
+    }
+
     /// Lays out what is needed, without gaps.
     pub fn new(needs: VertexNeeds) -> Self {
         let mut stride = 0;

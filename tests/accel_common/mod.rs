@@ -1,6 +1,7 @@
 //! Meshes, rays and a brute-force oracle for the tests of the acceleration structure.
 #![allow(dead_code)] // Each test file uses its part.
 
+pub mod instances;
 mod meshes;
 
 use etendue::accel::{BuildOptions, Bvh, Hit};

@@ -1,5 +1,6 @@
 //! Many lamps: together they give what one large one gives, however a light is chosen.
 
+use etendue::accel::BuildOptions;
 use etendue::render::LightSelection;
 use etendue::scene::{LightKind, Scene};
 use glam::DVec3;
@@ -118,7 +119,7 @@ fn the_way_of_choosing_changes_no_expectation() {
     let draw = |selection, seed| {
         let mut settings = square(24, 4096 * effort(), 3);
         settings.seed = seed;
-        render_with(&scene, &settings, Some(selection))
+        render_with(&scene, &settings, &BuildOptions::default(), Some(selection))
     };
     let tree = draw(LightSelection::Tree, 1);
     let others = [(LightSelection::Power, 2), (LightSelection::Uniform, 3)];

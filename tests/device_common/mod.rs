@@ -66,6 +66,7 @@ impl Setup {
             .into_iter()
             .collect();
         for name in [
+            "HAS_INSTANCES",
             "HAS_LIGHT_TRIANGLES",
             "HAS_PUNCTUAL_LIGHTS",
             "HAS_SEVERAL_LIGHTS",
@@ -104,6 +105,7 @@ impl Setup {
     pub fn structure(mut self, bvh: &Bvh) -> Self {
         self.accel = accel_files(bvh);
         self.with(stack(bvh.depth))
+            .with([("HAS_INSTANCES", Constant::Bool(bvh.has_instances()))])
     }
 
     /// Sets constants of `features.wgsl`.

@@ -30,14 +30,18 @@ pub fn device() -> &'static Device {
 
 /// Renders a scene and insists on what every film has to be: complete and finite.
 pub fn render(scene: &Scene, settings: &Settings) -> Film {
-    render_with(scene, settings, None)
+    render_with(scene, settings, &BuildOptions::default(), None)
 }
 
-/// The same, lights chosen as is wished.
-pub fn render_with(scene: &Scene, settings: &Settings, wish: Option<LightSelection>) -> Film {
+/// The same with a structure of another kind, or lights chosen as is wished.
+pub fn render_with(
+    scene: &Scene,
+    settings: &Settings,
+    options: &BuildOptions,
+    wish: Option<LightSelection>,
+) -> Film {
     scene.validate().expect("the test's scene is valid");
-    let options = BuildOptions::default();
-    let prepared = Prepared::with_lights(scene, settings.camera, &options, wish);
+    let prepared = Prepared::with_lights(scene, settings.camera, options, wish);
     render_prepared(scene, &prepared.expect("a prepared scene"), settings)
 }
 

@@ -1,0 +1,216 @@
+// Traversal of a structure of two levels: a tree over the world, some of whose leaves are instances of
+// trees in spaces of their own. Twin of src/accel/traverse.rs.
+//
+// A ray that reaches an instance is turned into its space. What waits in the world stays on the stack
+// below a note to return. Hits of all spaces are put in order by their t, and their numbers.
+// Needs const STACK_SIZE (Bvh::depth).
+
+#include "accel/boxes.wgsl"
+#include "accel/closest.wgsl"
+
+// In Element.d.y of a leaf: it is an instance.
+const INSTANCE_FLAG: u32 = 0x80000000u;
+
+// In Group.entry on the stack, whose lowest bits are free: what is above it is of an instance, and what
+// it holds of the world.
+const RETURN_FLAG: u32 = 1u;
+
+// A query under way. The rest of its state, the children that wait, is on the stack.
+struct Traversal {
+  query: Query,
+  // The ray that is traced now, in the world: query.shadow, then query.ray.
+  ray: Ray,
+  is_shadow: bool,
+  // Of the ray in the space that it is in.
+  setup: RaySetup,
+  boxes: BoxSetup,
+  best: Closest,
+  // The leaves that stand for the instance that the ray is in, and that of the best hit; 0 in the world.
+  instance: u32,
+  best_instance: u32,
+  group: Group,
+  stack_size: u32,
+  // The element to look at next.
+  next: u32,
+  occluded: bool,
+  searching: bool,
+}
+
+fn trace_begin(query: Query) -> Traversal {
+  var t: Traversal;
+  t.query = query;
+  t.occluded = false;
+  t.searching = query.has_ray || query.has_shadow;
+  t.stack_size = 0u;
+  trace_ray(&t, query.has_shadow);
+  return t;
+}
+
+// Takes up one of the two rays.
+fn trace_ray(t: ptr<function, Traversal>, is_shadow: bool) {
+  (*t).is_shadow = is_shadow;
+  (*t).ray = (*t).query.ray;
+  if (is_shadow) {
+    (*t).ray = (*t).query.shadow;
+  }
+  go_to_world(t);
+  (*t).best = Closest((*t).ray.t_max, (*t).ray.t_max, MISS);
+  (*t).best_instance = 0u;
+  (*t).group = Group(0u, 0u, 0u);
+  (*t).next = 0u;
+}
+
+fn go_to_world(t: ptr<function, Traversal>) {
+  (*t).instance = 0u;
+  element_shift = 0u;
+  go_along(t, (*t).ray);
+}
+
+fn go_along(t: ptr<function, Traversal>, ray: Ray) {
+  (*t).setup = ray_setup(ray.origin, ray.direction);
+  (*t).boxes = box_setup(ray);
+}
+
+// The ray in the space of an instance.
+fn ray_in_instance(ray: Ray, leaf: Element) -> Ray {
+  let p = placement(leaf);
+  var inside = ray;
+  inside.origin = exact_point_to_tree(p, ray.origin);
+  inside.direction = exact_to_tree(p, ray.direction);
+  return inside;
+}
+
+// Notes where to return to, and goes on at the root of the instance's tree.
+fn enter_instance(t: ptr<function, Traversal>, leaf: Element, index: u32) {
+  settle(t);
+  var waiting = (*t).group;
+  waiting.entry |= RETURN_FLAG;
+  stack_write((*t).stack_size, waiting);
+  (*t).stack_size += 1u;
+  (*t).instance = index;
+  element_shift = leaf.d.z;
+  go_along(t, ray_in_instance((*t).ray, leaf));
+  // A group of one, the root.
+  (*t).group = Group((leaf.d.x << 4u) | 1u, 1u, 0u);
+}
+
+// Makes the t of the best hit exact, which can be done only in the space in which it was found.
+fn settle(t: ptr<function, Traversal>) {
+  if ((*t).best.low < (*t).best.high) {
+    (*t).best.high = refined_hit_on((*t).best.triangle, (*t).setup).t;
+    (*t).best.low = (*t).best.high;
+  }
+}
+
+fn trace_answer(t: Traversal) -> Answer {
+  var hit = miss(t.query.ray);
+  if (t.best.triangle != MISS) {
+    var setup = t.setup;
+    element_shift = 0u;
+    latest_record = 0u;
+    if (t.best_instance != 0u) {
+      let leaf = load_element(t.best_instance);
+      let inside = ray_in_instance(t.query.ray, leaf);
+      setup = ray_setup(inside.origin, inside.direction);
+      element_shift = leaf.d.z;
+      latest_record = leaf.d.w;
+    }
+    let refined = refined_hit_on(t.best.triangle, setup);
+    element_shift = 0u;
+    hit = Hit(refined.t, t.best.triangle, refined.b, refined.back_face);
+  }
+  return Answer(hit, t.occluded);
+}
+
+// Looks at so many elements, or fewer where that answers the query; false if there is more to do.
+fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
+  for (var i = 0u; i < elements && (*t).searching; i += 1u) {
+    if (count_step()) {
+      (*t).searching = false;
+      break;
+    }
+    let index = (*t).next & ~LEAF_FLAG;
+    let e = load_element(index);
+    let is_node = (*t).next < LEAF_FLAG;
+    let is_instance = !is_node && (e.d.y & INSTANCE_FLAG) != 0u;
+    if (COUNT_RAYS) { count_element(is_node || is_instance); }
+    if (is_node) {
+      let children = visit_node(e, (*t).boxes, (*t).best.high);
+      if (children.slots != 0u) {
+        if ((*t).group.slots != 0u) {
+          stack_write((*t).stack_size, (*t).group);
+          (*t).stack_size += 1u;
+        }
+        (*t).group = children;
+      }
+    } else if (is_instance) {
+      enter_instance(t, e, index);
+    } else {
+      look_at_pair(t, e, index);
+    }
+    go_on(t);
+  }
+  return !(*t).searching;
+}
+
+fn look_at_pair(t: ptr<function, Traversal>, e: Element, index: u32) {
+  let before = (*t).best.triangle;
+  let camera_ray = (*t).query.camera_ray && !(*t).is_shadow;
+  (*t).best = test_pair(e, index + element_shift, (*t).ray, (*t).setup, (*t).best, camera_ray, seed_here(*t));
+  if ((*t).best.triangle != before) {
+    (*t).best_instance = (*t).instance;
+  }
+  if ((*t).is_shadow && (*t).best.triangle != MISS) {
+    (*t).group.slots = 0u;
+    (*t).stack_size = 0u;
+  }
+}
+
+// What decides by chance where surfaces are blended: another number in each instance.
+fn seed_here(t: Traversal) -> u32 {
+  var seed = select(t.query.seed, t.query.shadow_seed, t.is_shadow);
+  if (HAS_ALPHA) {
+    if (t.instance != 0u) {
+      seed = hash2(vec2u(seed, t.instance));
+    }
+  }
+  return seed;
+}
+
+// Finds the next element, among the children that were put aside last; where there is none the ray
+// is done.
+fn go_on(t: ptr<function, Traversal>) {
+  if ((*t).group.slots == 0u || bitcast<f32>((*t).group.entry) > (*t).best.high * FAR_SLACK) {
+    (*t).group.slots = 0u;
+    while ((*t).stack_size > 0u) {
+      if (count_step()) {
+        break;
+      }
+      (*t).stack_size -= 1u;
+      let entry = stack_read_entry((*t).stack_size);
+      if ((entry & RETURN_FLAG) != 0u) {
+        settle(t);
+        go_to_world(t);
+      }
+      if (bitcast<f32>(entry & ~RETURN_FLAG) <= (*t).best.high * FAR_SLACK) {
+        (*t).group = stack_read((*t).stack_size);
+        (*t).group.entry &= ~RETURN_FLAG;
+        if ((*t).group.slots != 0u) {
+          break;
+        }
+      }
+    }
+  }
+  if ((*t).group.slots != 0u) {
+    let slot = ((*t).group.slots & 15u) - 1u;
+    let is_leaf = slot >= ((*t).group.header & 15u);
+    (*t).next = (((*t).group.header >> 4u) + slot) | select(0u, LEAF_FLAG, is_leaf);
+    (*t).group.slots >>= 4u;
+  } else if ((*t).is_shadow) {
+    (*t).occluded = (*t).best.triangle != MISS;
+    (*t).searching = (*t).query.has_ray;
+    trace_ray(t, false);
+  } else {
+    (*t).searching = false;
+  }
+}

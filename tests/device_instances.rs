@@ -1,0 +1,251 @@
+//! Structures of two levels on the device against the oracle on the host: same hits, bit for bit where the device
+//! rounds as the host does; and no way out of a closed mesh that is an instance.
+
+mod accel_common;
+mod device_common;
+
+use accel_common::Random;
+use accel_common::instances::{Instanced, place, structures, turn};
+use accel_common::{cube, sphere};
+use device_common::{ELEMENTS, Kernel, Setup, rounds_as_the_host, upload};
+use etendue::accel::{Hit, Steps};
+use etendue::geometry::Ray;
+use etendue::render::program::stack_constants;
+use glam::{DMat3, DVec3, Vec3};
+use rayon::prelude::*;
+
+/// Rays for each structure.
+const RAYS: usize = 65_536;
+
+/// Where the device contracts, t may differ by so much of itself, the barycentrics by 1e-4, and one ray in 10,000 may meet
+/// another triangle: it has another ray in an instance's space.
+const T_ERROR: f32 = 1e-5;
+
+fn inputs(rays: &[Ray]) -> Vec<[[f32; 4]; 2]> {
+    let input = |r: &Ray| {
+        let (o, d) = (r.origin.extend(r.t_max), r.direction.extend(0.0));
+        [o.to_array(), d.to_array()]
+    };
+    rays.iter().map(input).collect()
+}
+
+/// The device's hits, and whether it found the rays occluded.
+fn trace(
+    kernel: &Kernel,
+    target: &Instanced,
+    rays: &[Ray],
+    params: [u32; 3],
+) -> Vec<(Option<Hit>, bool)> {
+    let elements = upload("elements", &target.bvh.elements);
+    let (n, buffers) = (rays.len(), [(ELEMENTS, &elements)]);
+    let results: Vec<[[u32; 4]; 2]> = kernel.run(n as u32, params, &inputs(rays), n, &buffers);
+    let hit = |[a, b]: &[[u32; 4]; 2]| Hit {
+        t: f32::from_bits(a[0]),
+        triangle: a[1],
+        b: [b[0], b[1], b[2]].map(f32::from_bits),
+        back_face: a[2] == 1,
+    };
+    results
+        .iter()
+        .map(|r| ((r[0][1] != u32::MAX).then(|| hit(r)), r[0][3] == 1))
+        .collect()
+}
+
+/// Rays that are hard to decide, some of them ending just at, before or behind their hit.
+fn rays(target: &Instanced, seed: u64) -> Vec<Ray> {
+    let mut random = Random(seed);
+    let ray = |i: usize| {
+        let mut ray = target.ray(&mut random);
+        if i % 4 == 3
+            && let Some(hit) = target.bvh.intersect(&ray)
+        {
+            ray.t_max = [hit.t, hit.t.next_down(), hit.t.next_up()][i / 4 % 3];
+        }
+        ray
+    };
+    (0..RAYS).map(ray).collect()
+}
+
+/// Whether two hits agree as far as the device's rounding lets them.
+fn agree(device: &Option<Hit>, host: &Option<Hit>) -> bool {
+    match (device, host) {
+        (Some(d), Some(h)) if !rounds_as_the_host() => {
+            let same_place = (0..3).all(|i| (d.b[i] - h.b[i]).abs() < 1e-4);
+            d.triangle == h.triangle && (d.t - h.t).abs() <= T_ERROR * h.t && same_place
+        }
+        _ => device == host,
+    }
+}
+
+/// Rays whose answers are unlike the host's, and those that hit.
+fn compare(setup: &Setup, name: &str, target: &Instanced) -> (usize, usize) {
+    let kernel = setup
+        .clone()
+        .structure(&target.bvh)
+        .kernel("traversal", "main");
+    compare_by(&kernel, name, target)
+}
+
+fn compare_by(kernel: &Kernel, name: &str, target: &Instanced) -> (usize, usize) {
+    let rays = rays(target, 5);
+    let expected: Vec<_> = rays.par_iter().map(|r| target.bvh.intersect(r)).collect();
+    let found = trace(kernel, target, &rays, [0; 3]);
+    let mut unlike = 0;
+    for ((ray, (hit, occluded)), expected) in rays.iter().zip(found).zip(&expected) {
+        if !agree(&hit, expected) || occluded != expected.is_some() {
+            if unlike == 0 {
+                println!("{name}, {ray:?}: {hit:?}, host {expected:?}");
+            }
+            unlike += 1;
+        }
+    }
+    let hits = expected.iter().flatten().count();
+    println!("{name}: {hits} hits of {RAYS} rays, {unlike} unlike the host's");
+    (unlike, hits)
+}
+
+#[test]
+fn device_and_host_find_the_same_hits() {
+    let allowed = if rounds_as_the_host() {
+        0
+    } else {
+        RAYS / 10_000
+    };
+    for (name, target) in structures() {
+        let (unlike, hits) = compare(&Setup::new(), name, &target);
+        assert!(unlike <= allowed && hits * 3 > RAYS, "{name}: {unlike}");
+    }
+}
+
+/// The notes of where to return to are on the stack in either memory.
+#[test]
+fn the_stack_may_be_in_either_memory() {
+    let (name, target) = structures().swap_remove(3);
+    for workgroup_bytes in [0, u32::MAX] {
+        let constants = stack_constants(target.bvh.depth, workgroup_bytes);
+        let setup = Setup::new().structure(&target.bvh).with(constants);
+        let kernel = setup.kernel("traversal", "main");
+        let (unlike, _) = compare_by(&kernel, name, &target);
+        assert!(
+            unlike
+                <= if rounds_as_the_host() {
+                    0
+                } else {
+                    RAYS / 10_000
+                }
+        );
+    }
+}
+
+/// The two rays of a query, traced one after the other and in rounds of a few elements, get the answers that each
+/// gets alone.
+#[test]
+fn rays_that_are_traced_together_are_answered_as_alone() {
+    let (_, target) = structures().swap_remove(3);
+    let setup = Setup::new().structure(&target.bvh);
+    let rays = rays(&target, 1);
+    let expected = trace(&setup.kernel("traversal", "main"), &target, &rays, [0; 3]);
+    let together = setup.kernel("traversal", "together");
+    for (shift, round) in [(0, u32::MAX), (1, 1), (7, 2), (100, 16)] {
+        let found = trace(&together, &target, &rays, [shift, round, 0]);
+        for i in 0..RAYS {
+            assert_eq!(found[i].0, expected[i].0, "{shift} {round} {:?}", rays[i]);
+            let other = (i + RAYS - shift as usize) % RAYS;
+            assert_eq!(found[i].1, expected[other].1, "{shift} {round} {i}");
+        }
+    }
+}
+
+/// Negative controls: hits of another instance's number, t that is taken from the wrong space, returning to the wrong
+/// ray, instances of which the last is forgotten.
+#[test]
+fn mistakes_are_noticed() {
+    let target = structures().swap_remove(3).1;
+    for (from, to) in [
+        ("index + element_shift", "index"),
+        ("  settle(t);\n  var waiting", "  var waiting"),
+        (
+            "        settle(t);\n        go_to_world",
+            "        go_to_world",
+        ),
+        ("        go_to_world(t);\n", ""),
+        (
+            "(*t).best_instance = (*t).instance",
+            "(*t).best_instance = 0u",
+        ),
+        (
+            "waiting.entry |= RETURN_FLAG",
+            "waiting = Group(0u, 0u, RETURN_FLAG)",
+        ),
+    ] {
+        let setup = Setup::new().patched("accel/instances.wgsl", from, to);
+        let (unlike, hits) = compare(&setup, to, &target);
+        assert!(unlike * 1000 > hits, "{from}: {unlike} of {hits}");
+    }
+}
+
+/// What `--stats` counts is what the host looks at: a few elements more, since the device knows the distance of the
+/// closest hit by its upper bound.
+#[test]
+fn the_device_counts_what_the_host_looks_at() {
+    let (_, target) = structures().swap_remove(1);
+    let rays = &rays(&target, 3)[..4096];
+    let setup = Setup::new().on(&["COUNT_RAYS"]).structure(&target.bvh);
+    let elements = upload("elements", &target.bvh.elements);
+    let buffers = [(ELEMENTS, &elements)];
+    let kernel = setup.kernel("counts", "traversal");
+    let found: Vec<[u32; 4]> = kernel.run(
+        rays.len() as u32,
+        [0; 3],
+        &inputs(rays),
+        rays.len(),
+        &buffers,
+    );
+    let mut expected = Steps::default();
+    for ray in rays {
+        target.bvh.trace(ray, false, &mut expected);
+        target.bvh.trace(ray, true, &mut expected);
+    }
+    let expected = expected.nodes + expected.pairs;
+    let found: u64 = found.iter().flatten().map(|&n| u64::from(n)).sum();
+    assert!(
+        found.abs_diff(expected) * 100 < expected,
+        "{found}, the host has {expected}"
+    );
+}
+
+#[test]
+fn nothing_leaves_a_closed_instance_on_the_device() {
+    let mut random = Random(3);
+    let (mut missed, mut all) = (0, 0);
+    for (mesh, radius) in [(sphere(24), 0.9), (cube(7), 1.0)] {
+        for scale in [1e-6, 1.0, 1e6] {
+            for offset in [DVec3::ZERO, DVec3::new(1e4, -3e3, 2e4) * scale] {
+                let linear =
+                    turn(&mut random) * DMat3::from_diagonal(DVec3::new(1.0, -0.3, 2.0) * scale);
+                let placement = place(0, linear, offset);
+                let target = Instanced::new(&[], std::slice::from_ref(&mesh), &[placement]);
+                let start = random.point().as_dvec3() * 0.3 * radius;
+                let origin = (placement.forward() * start + offset).as_vec3();
+                let mut rays: Vec<Ray> = (0..20_000)
+                    .map(|_| Ray::new(origin, random.direction()))
+                    .collect();
+                for &[a, b, c] in &target.placed {
+                    let points = [a, a * 0.5 + b * 0.5, (a + b + c) / 3.0];
+                    rays.extend(points.map(|point| Ray::new(origin, point - origin)));
+                }
+                for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+                    rays.extend([Ray::new(origin, axis), Ray::new(origin, -axis)]);
+                }
+                let kernel = Setup::new()
+                    .structure(&target.bvh)
+                    .kernel("traversal", "main");
+                let found = trace(&kernel, &target, &rays, [0; 3]);
+                missed += found.iter().filter(|(h, o)| h.is_none() || !o).count();
+                all += rays.len();
+            }
+        }
+    }
+    println!("{all} rays from inside closed instances");
+    assert_eq!(missed, 0, "of {all}");
+}
