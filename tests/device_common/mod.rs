@@ -80,6 +80,7 @@ impl Setup {
             constants.insert(name, Constant::Bool(false));
         }
         for name in [
+            "SPECTRUM_TABLE",
             "VERTEX_STRIDE",
             "NORMAL_OFFSET",
             "TANGENT_OFFSET",

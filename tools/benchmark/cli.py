@@ -5,7 +5,7 @@ import json
 import pathlib
 import sys
 
-from . import assets, builder, compare, gpu, kernel, light_scenes, lights, peer_etendue, places, scaling
+from . import assets, builder, compare, features, gpu, kernel, light_scenes, lights, peer_etendue, places, scaling
 from . import scene_writer, tables
 from .places import BenchError
 
@@ -30,7 +30,7 @@ def parser():
     top = argparse.ArgumentParser(
         prog="tools/bench",
         description="Measures étendue against its peers.",
-        epilog="Also: tools/bench scaling, tools/bench gpu, tools/bench kernel, tools/bench bvh, tools/bench lights; each has --help.",
+        epilog="Also: tools/bench scaling, tools/bench gpu, tools/bench kernel, tools/bench bvh, tools/bench lights, tools/bench-features; each has --help.",
     )
     top.add_argument(
         "--scenes", default="", help=f"comma-separated: {', '.join(scene_writer.NAMES)} (default: all that can be had)"
@@ -199,6 +199,25 @@ def measure_lights(arguments):
     return finish(options, rows, lights.markdown(rows, *drawn))
 
 
+def measure_features(arguments):
+    top = argparse.ArgumentParser(
+        prog="tools/bench-features",
+        description="What each feature of the shader costs when it is compiled in but not used, and when it is used.",
+    )
+    known = list(features.USES)
+    top.add_argument("--features", default=",".join(known), help="comma-separated (default %(default)s)")
+    top.add_argument("--rounds", type=positive, default=5, help="interleaved rounds (default %(default)s)")
+    top.add_argument("--spp", type=positive, default=16, help="samples a pixel (default %(default)s)")
+    top.add_argument("--size", type=positive, default=256, help="width and height (default %(default)s)")
+    top.add_argument("--threads", type=positive, default=places.threads())
+    add_device(top)
+    options = top.parse_args(arguments)
+    names = split(options.features, known, "--features")
+    drawn = options.rounds, options.spp, options.size
+    rows = features.measure(command_of(options), options.threads, names, *drawn)
+    return finish(options, rows, features.markdown(rows, *drawn))
+
+
 def finish(options, report, table):
     write(options, report, table)
     print(table)
@@ -211,6 +230,7 @@ COMMANDS = {
     "kernel": measure_kernel,
     "bvh": measure_bvh,
     "lights": measure_lights,
+    "features": measure_features,
 }
 
 

@@ -62,6 +62,9 @@ class Row:
         """(answer, picture)"""
         output = self.folder / ("ours.exr" if renderer is self.ours else f"theirs{pictures.SUFFIX[self.name]}")
         request = {"spp": spp, "seed": seed, "size": self.settings.size, "max_depth": self.settings.max_depth}
+        if renderer is self.ours:
+            # The peers' microfacets lose what bounces between them.
+            request["set"] = "MULTIPLE_SCATTERING=0"
         answer = renderer.render(**request, **more, output=str(output))
         return answer, pictures.read(output)
 
