@@ -28,14 +28,16 @@ def street(count, random):
 
 
 def clusters(count, random):
-    """In clusters of 0.2 to 2 m, facing all ways, of radiances that span a factor of 1000."""
+    """In clusters of 0.2 to 2 m, facing all ways up to 70° from down, of radiances that span a factor of 1000. The camera
+    looks down on them and sees none: what is seen directly is noise that no choice of a light changes."""
     centres = random.uniform((-HALF, 0.5, -HALF), (HALF, 2.5, HALF), (16, 3))
     sizes = 0.2 * 10 ** random.uniform(0, 1, 16)
     which = random.integers(16, size=count)
     places = centres[which] + sizes[which, None] * random.normal(size=(count, 3))
     places[:, 1] = numpy.abs(places[:, 1]) + 0.05
-    normals = random.normal(size=(count, 3))
-    normals /= numpy.linalg.norm(normals, axis=1, keepdims=True)
+    down, turn = random.uniform(math.cos(math.radians(70)), 1, count), random.uniform(0, 2 * math.pi, count)
+    across = numpy.sqrt(1 - down**2)
+    normals = numpy.stack([across * numpy.cos(turn), -down, across * numpy.sin(turn)], axis=1)
     return places, normals, random.integers(len(CLASSES), size=count)
 
 
@@ -92,7 +94,10 @@ def hall(name, classes):
     radiance = CLASSES[classes]
     for k in numpy.unique(classes):
         gltf.emitter(f"lamp {k}", [1, 0.9, 0.8], 600 * float(CLASSES[k] / radiance.mean()))
-    gltf.camera("camera", eye=[0, 9, 17], target=[0, 0, 1], yfov=50, aspect=1)
+    if name == "clusters":
+        gltf.camera("camera", eye=[0, 60, 0], target=[0, 0, -0.001], yfov=23, aspect=1)
+    else:
+        gltf.camera("camera", eye=[0, 9, 17], target=[0, 0, 1], yfov=50, aspect=1)
     return gltf
 
 
