@@ -152,6 +152,9 @@ fn lost_share(ggx: f32) -> f32 {
 
 // Adds the specular lobes, of which `above` is left; gives what a dielectric leaves to the diffuse base.
 fn add_specular(bsdf: ptr<function, Bsdf>, m: BsdfParameters, wo: vec3f, above: vec3f) -> f32 {
+    if (m.metallic == 0.0 && m.specular == 0.0 && (!HAS_TRANSMISSION || m.transmission == 0.0)) {
+        return 1.0;
+    }
     let normal = select(normal_reflectance(m.eta), 1.0, m.eta == 0.0);
     let f0 = min(normal * m.specular_color, vec3f(1.0)) * m.specular;
     let f90 = m.specular;
@@ -159,10 +162,10 @@ fn add_specular(bsdf: ptr<function, Bsdf>, m: BsdfParameters, wo: vec3f, above: 
     var weight = dielectric_weight(wo.z, m.eta);
     if (!ggx_is_delta(m.alpha)) {
         ggx = albedo_at(ALBEDO_GGX, wo.z, m.roughness);
-        if (m.eta != 0.0) {
-            weight = albedo_at(m.albedo_table, wo.z, m.roughness) / ggx;
-        } else {
-            weight = albedo_at(ALBEDO_SCHLICK, wo.z, m.roughness) / ggx;
+        // Nothing lies below a metal.
+        if (m.metallic < 1.0) {
+            let table = select(m.albedo_table, ALBEDO_SCHLICK, m.eta == 0.0);
+            weight = albedo_at(table, wo.z, m.roughness) / ggx;
         }
     }
     let lost = lost_share(ggx);
