@@ -35,11 +35,20 @@ fn emitted_radiance(s: Surface) -> vec3f {
     if (s.back_face && (flags & MATERIAL_DOUBLE_SIDED) == 0u) {
         return vec3f(0.0);
     }
-    return emissive_at(s.material, s.uv0, s.uv1);
+    return emissive_at(s.material, s.uv0, s.uv1, dot(s.wo, s.normal));
 }
 
-fn emissive_at(material: u32, uv0: vec2f, uv1: vec2f) -> vec3f {
+// Emitted radiance at a cosine to the triangle's normal: a clear coat reflects a part of it back.
+fn emissive_at(material: u32, uv0: vec2f, uv1: vec2f, cos_theta: f32) -> vec3f {
     var emissive = materials[material].emissive;
+    if (HAS_CLEARCOAT && materials[material].clearcoat > 0.0) {
+        var clearcoat = materials[material].clearcoat;
+        let slot = materials[material].clearcoat_texture;
+        if (HAS_CLEARCOAT_TEXTURE && slot.texture != NONE) {
+            clearcoat *= sample_texture(slot, uv0, uv1).r;
+        }
+        emissive *= 1.0 - clearcoat * clearcoat_fresnel(abs(cos_theta));
+    }
     if (HAS_EMISSIVE_TEXTURE) {
         let slot = materials[material].emissive_texture;
         if (slot.texture != NONE) {

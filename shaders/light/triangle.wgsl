@@ -16,7 +16,7 @@ fn light_triangle_sample(s: Surface, id: u32, u: vec2f) -> LightSample {
     if (distance == 0.0 || cos_light == 0.0 || (cos_light < 0.0 && !two_sided)) {
         return no_light_sample();
     }
-    let emitted = light_triangle_radiance(triangle, b) * coverage(triangle, b);
+    let emitted = light_triangle_radiance(triangle, b, cos_light) * coverage(triangle, b);
     let pdf = light_triangle_pdf(distance, abs(cos_light), 0.5 * cross_length);
     var sample = no_light_sample();
     sample.triangle = id;
@@ -35,13 +35,13 @@ fn light_triangle_pdf(distance: f32, cos_light: f32, area: f32) -> f32 {
     return (distance / area) * (distance / cos_light);
 }
 
-fn light_triangle_radiance(triangle: Triangle, b: vec3f) -> vec3f {
+fn light_triangle_radiance(triangle: Triangle, b: vec3f, cos_light: f32) -> vec3f {
     var uv0 = vec2f(0.0);
     var uv1 = vec2f(0.0);
-    if (HAS_EMISSIVE_TEXTURE) {
+    if (HAS_EMISSIVE_TEXTURE || HAS_CLEARCOAT_TEXTURE) {
         let uv = texture_coordinates(triangle.index, b);
         uv0 = uv.xy;
         uv1 = uv.zw;
     }
-    return emissive_at(triangle.material, uv0, uv1);
+    return emissive_at(triangle.material, uv0, uv1, cos_light);
 }
