@@ -94,6 +94,9 @@ impl Place {
 
 /// Reorders a group of two or more in two parts, neither empty; gives the size of the first.
 fn split(items: &mut [Item], depth: u32) -> usize {
+    if items.len() == 2 {
+        return 1;
+    }
     let extent = centers(items);
     let levels = items.len().next_power_of_two().ilog2();
     // An uneven split may leave one level less than halving would need.
