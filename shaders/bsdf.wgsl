@@ -289,13 +289,16 @@ fn choose_probabilities(bsdf: ptr<function, Bsdf>, wo: vec3f) {
         diffuse_transmission = luminance(b.diffuse_transmission);
     }
     let wide = diffuse + diffuse_transmission;
-    // Beside a wide lobe none that is there is starved: it may be much brighter elsewhere.
-    let least = select(0.0, 0.1 * (wide + specular + transmission + coat + sheen), wide > 0.0);
+    // Beside a wide lobe, and where microfacets refract other than the surface as a whole would, no lobe that
+    // is there is starved: it may be much brighter elsewhere.
+    let is_blurred = wide > 0.0 || (has_transmission(b) && !specular_is_delta(b));
+    let least = select(0.0, 0.1 * (wide + specular + transmission + coat + sheen), is_blurred);
     specular = select(0.0, max(specular, least), has_specular(b));
     coat = select(0.0, max(coat, least), has_coat(b));
     sheen = select(0.0, max(sheen, least), has_sheen(b));
     transmission = select(0.0, max(transmission, least), has_transmission(b));
-    let sum = max(wide, least) + specular + transmission + coat + sheen;
+    let diffuse_share = select(0.0, max(wide, least), wide > 0.0);
+    let sum = diffuse_share + specular + transmission + coat + sheen;
     if (!(sum > 0.0)) {
         return;
     }
@@ -304,7 +307,7 @@ fn choose_probabilities(bsdf: ptr<function, Bsdf>, wo: vec3f) {
     (*bsdf).p_coat = coat / sum;
     (*bsdf).p_sheen = sheen / sum;
     if (wide > 0.0) {
-        (*bsdf).p_diffuse_transmission = max(wide, least) / sum * (diffuse_transmission / wide);
+        (*bsdf).p_diffuse_transmission = diffuse_share / sum * (diffuse_transmission / wide);
     }
 }
 
