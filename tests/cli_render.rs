@@ -130,6 +130,20 @@ fn the_report_has_every_field() {
 }
 
 #[test]
+fn the_report_tells_what_instances_share() {
+    let instances = |mode: &str| {
+        let arguments = ["--instancing", mode, "--spp", "1", "--json", "-"];
+        let report = render_scene("scenes/foliage.gltf", &arguments)
+            .ends_with(0)
+            .json();
+        report["bvh"]["instancing"]["instances"].as_u64()
+    };
+    assert_eq!(instances("auto"), Some(0));
+    assert_eq!(instances("never"), Some(0));
+    assert!(instances("always") > Some(0));
+}
+
+#[test]
 fn a_report_alone_goes_to_a_file_and_leaves_out_what_was_not_counted() {
     let folder = folder();
     let path = path_in(&folder, "report.json");

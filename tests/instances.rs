@@ -92,6 +92,43 @@ fn mirrored_and_unevenly_scaled_instances_look_like_flattened_ones() {
     }
 }
 
+/// Bytes of a scene's geometry on the device, by itself.
+fn geometry_bytes(prepared: &Prepared) -> usize {
+    let elements = size_of_val(&prepared.bvh.elements[..]);
+    elements + size_of_val(&prepared.indices[..]) + size_of_val(&prepared.vertex_words[..])
+}
+
+/// Ten thousand copies of a mesh of 80,000 triangles, without being asked to share: their own copies would be 35 GB.
+#[test]
+fn many_instances_take_the_memory_of_one_and_their_placements() {
+    let mut builder = SceneBuilder::new();
+    builder.sphere(lambert(0.5), &Icosphere::new(DVec3::ZERO, 1.0, 6), false);
+    builder.pinhole(DVec3::new(0.0, 5.0, 30.0), DVec3::ZERO, 1.0);
+    let mut scene = builder.scene;
+    let prepare = |scene: &Scene| {
+        Prepared::new(scene, 0, &BuildOptions::default()).expect("a prepared scene")
+    };
+    let one = prepare(&scene);
+    assert!(!one.bvh.has_instances());
+    for i in 1..10_000 {
+        let place = DVec3::new(f64::from(i % 100), 0.0, f64::from(i / 100)) * 3.0;
+        scene.instances.push(Instance {
+            to_world: DMat4::from_translation(place),
+            ..scene.instances[0].clone()
+        });
+    }
+    let many = prepare(&scene);
+    assert_eq!(many.bvh.instances.len(), 10_000);
+    let placements = geometry_bytes(&many) - geometry_bytes(&one);
+    println!(
+        "{} bytes for one, {placements} more for 10,000",
+        geometry_bytes(&one)
+    );
+    assert!(placements < 160 * 10_000, "{placements}");
+    let film = render_with(&scene, &square(16, 4, 2), &BuildOptions::default());
+    assert_eq!(film.pixels.len(), 256);
+}
+
 /// Largest difference of a pixel's channel, but for one pixel in a hundred: at silhouettes rays may decide otherwise.
 fn difference(a: &Film, b: &Film) -> f64 {
     let pixel = |i: usize| {

@@ -31,6 +31,9 @@ pub const MAX_ELEMENTS: usize = 1 << 28;
 /// The grid's origin is x, y, z (two's complement) times 2^(origin exponent - 127); its step on an
 /// axis is 2^(origin exponent + grid exponent - 8 - finer - 127). Decoded boxes hold the padded ones
 /// with [`MARGIN`] steps to spare, but for planes at 0 steps.
+///
+/// A structure of two levels has more kinds: a header, instances among the leaves, and their records
+/// ([`super::Instance`], [`super::TwoLevel`]).
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 pub struct Element {
