@@ -9,6 +9,10 @@ const GGX_SMOOTHEST: f32 = 1.0e-3;
 // The least roughness across a stretched lobe.
 const ANISOTROPIC_SMOOTHEST: f32 = 1.0e-4;
 
+// Whether masking and shadowing go with the height of the microfacet (glTF 2.0, appendix B). Without it they are
+// independent, as in Mitsuba's rough conductor and rough dielectric, and rough surfaces are darker.
+override HEIGHT_CORRELATED: bool = true;
+
 // Density of microfacet normals. The sum of squares has no cancellation, even at the peak.
 fn ggx_distribution(alpha: vec2f, h: vec3f) -> f32 {
     let a = alpha.x * alpha.y;
@@ -23,14 +27,23 @@ fn ggx_lambda_term(alpha: vec2f, w: vec3f) -> f32 {
     return sqrt(w.z * w.z + dot(across, across)) / abs(w.z);
 }
 
+// The share of microfacets that are seen from both wo and wi, on either side: G2.
+fn ggx_masking(alpha: vec2f, wo: vec3f, wi: vec3f) -> f32 {
+    let o = ggx_lambda_term(alpha, wo);
+    let i = ggx_lambda_term(alpha, wi);
+    if (HEIGHT_CORRELATED) {
+        return 2.0 / (o + i);
+    }
+    return 4.0 / ((1.0 + o) * (1.0 + i));
+}
+
 fn ggx_is_delta(alpha: vec2f) -> bool {
     return max(alpha.x, alpha.y) < GGX_SMOOTHEST;
 }
 
 // The BRDF without its Fresnel term, times the cosine of wi: D G2 / (4 cos_o).
 fn ggx_eval(alpha: vec2f, wo: vec3f, wi: vec3f, h: vec3f) -> f32 {
-    let masking = 2.0 / (ggx_lambda_term(alpha, wo) + ggx_lambda_term(alpha, wi));
-    return ggx_distribution(alpha, h) * masking / (4.0 * wo.z);
+    return ggx_distribution(alpha, h) * ggx_masking(alpha, wo, wi) / (4.0 * wo.z);
 }
 
 // Density over solid angle of the normals visible from wo.

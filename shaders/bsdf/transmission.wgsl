@@ -33,8 +33,7 @@ fn transmission_eval(alpha: vec2f, eta: f32, thin: bool, wo: vec3f, wi: vec3f, h
         return ggx_eval(alpha, wo, above, h);
     }
     let jacobian = refraction_jacobian(wo, wi, h, eta);
-    let masking = 2.0 / (ggx_lambda_term(alpha, wo) + ggx_lambda_term(alpha, wi));
-    return ggx_distribution(alpha, h) * masking * max(dot(wo, h), 0.0) * jacobian / wo.z;
+    return ggx_distribution(alpha, h) * ggx_masking(alpha, wo, wi) * max(dot(wo, h), 0.0) * jacobian / wo.z;
 }
 
 // Density over the solid angle of wi.
