@@ -107,9 +107,11 @@ fn bsdf_of(m: BsdfParameters, wo: vec3f) -> Bsdf {
     }
     if (HAS_SHEEN && max_component(m.sheen_color) > 0.0) {
         bsdf.sheen_alpha = m.sheen_roughness * m.sheen_roughness;
-        bsdf.sheen = below * m.sheen_color;
         let albedo = albedo_at(ALBEDO_SHEEN, wo.z, m.sheen_roughness);
-        below *= max(0.0, 1.0 - max_component(m.sheen_color) * albedo);
+        // Smoother than about 0.25 the model reflects more than arrives at grazing angles, up to three times as
+        // much: it is brought down to all.
+        bsdf.sheen = below * m.sheen_color / max(albedo, 1.0);
+        below *= 1.0 - max_component(m.sheen_color) * min(albedo, 1.0);
     }
     var base = (1.0 - m.metallic) * below;
     if (HAS_SPECULAR) {
@@ -195,7 +197,12 @@ fn add_specular(bsdf: ptr<function, Bsdf>, m: BsdfParameters, wo: vec3f, above: 
         (*bsdf).film_weight = above * (m.film.strength * m.specular) * for_dielectric;
         (*bsdf).film_metal_weight = above * m.film.strength * for_metal;
         bare *= 1.0 - m.film.strength;
-        let film_albedo = max_component(film_reflectance(*bsdf, f0, wo.z)) * m.specular * ggx;
+        var cos_film = wo.z;
+        if (!ggx_is_delta(m.alpha)) {
+            // The cosine at which Schlick's weight is its mean over the microfacets.
+            cos_film = 1.0 - pow(albedo_at(ALBEDO_SCHLICK, wo.z, m.roughness) / ggx, 0.2);
+        }
+        let film_albedo = max_component(film_reflectance(*bsdf, f0, cos_film)) * m.specular * ggx;
         albedo = mix(albedo, max_component(of_dielectric) * film_albedo, m.film.strength);
     }
     (*bsdf).f0 = bare * (for_metal * m.base_color + for_dielectric * f0);
@@ -289,10 +296,10 @@ fn choose_probabilities(bsdf: ptr<function, Bsdf>, wo: vec3f) {
         diffuse_transmission = luminance(b.diffuse_transmission);
     }
     let wide = diffuse + diffuse_transmission;
-    // Beside a wide lobe, and where microfacets refract other than the surface as a whole would, no lobe that
-    // is there is starved: it may be much brighter elsewhere.
-    let is_blurred = wide > 0.0 || (has_transmission(b) && !specular_is_delta(b));
-    let least = select(0.0, 0.1 * (wide + specular + transmission + coat + sheen), is_blurred);
+    // Beside a wide lobe none that is there is starved: it may be much brighter elsewhere. Nor is rough
+    // refraction, of which some leaves a solid beyond the critical angle, too.
+    let refracts = has_transmission(b) && !bsdf_transmission_is_delta(b);
+    let least = select(0.0, 0.1 * (wide + specular + transmission + coat + sheen), wide > 0.0 || refracts);
     specular = select(0.0, max(specular, least), has_specular(b));
     coat = select(0.0, max(coat, least), has_coat(b));
     sheen = select(0.0, max(sheen, least), has_sheen(b));
@@ -430,6 +437,9 @@ fn bsdf_sample(b: Bsdf, wo: vec3f, u: vec2f, u_lobe: f32) -> BsdfSample {
     }
     // Lobes reflect or transmit, never both: what leaves on the wrong side is lost.
     if ((in_specular || in_coat) && wi.z <= 0.0) {
+        return no_bsdf_sample();
+    }
+    if (HAS_CLEARCOAT && in_coat && !clearcoat_reflects(b.coat, wo, wi)) {
         return no_bsdf_sample();
     }
     let pdf = bsdf_pdf(b, wo, wi);

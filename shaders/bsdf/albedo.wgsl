@@ -1,5 +1,5 @@
-// Directional albedos of lobes, from tables that the host integrates (src/render/albedo.rs): rows of
-// perceptual roughness from 0 to 1, in each row ALBEDO_COSINES values at cosines (i / (n - 1))^2.
+// Directional albedos of lobes, from tables that the host integrates (src/render/albedo.rs): rows at
+// perceptual roughnesses (j / (m - 1))^2, in each row ALBEDO_COSINES values at cosines (i / (n - 1))^4.
 
 #include "bindings.wgsl"
 #include "math/float.wgsl"
@@ -14,8 +14,8 @@ const ALBEDO_SCHLICK: u32 = ALBEDO_SIZE;
 const ALBEDO_SHEEN: u32 = 2u * ALBEDO_SIZE;
 
 fn albedo_at(first: u32, cos_theta: f32, roughness: f32) -> f32 {
-    let x = sqrt(clamp(cos_theta, 0.0, 1.0)) * f32(ALBEDO_COSINES - 1u);
-    let y = clamp(roughness, 0.0, 1.0) * f32(ALBEDO_ROUGHNESSES - 1u);
+    let x = sqrt(sqrt(clamp(cos_theta, 0.0, 1.0))) * f32(ALBEDO_COSINES - 1u);
+    let y = sqrt(clamp(roughness, 0.0, 1.0)) * f32(ALBEDO_ROUGHNESSES - 1u);
     let column = min(floor_to_u32(x), ALBEDO_COSINES - 2u);
     let row = min(floor_to_u32(y), ALBEDO_ROUGHNESSES - 2u);
     let fx = x - f32(column);

@@ -23,6 +23,11 @@ fn clearcoat_is_delta(coat: Clearcoat) -> bool {
     return ggx_is_delta(vec2f(coat.alpha));
 }
 
+// Whether both directions are on the outer side of the coat.
+fn clearcoat_reflects(coat: Clearcoat, wo: vec3f, wi: vec3f) -> bool {
+    return dot(wo, coat.normal) > 0.0 && dot(wi, coat.normal) > 0.0;
+}
+
 // BRDF times the cosine.
 fn clearcoat_eval(coat: Clearcoat, wo: vec3f, wi: vec3f) -> f32 {
     let frame_ = frame_from_z(coat.normal);

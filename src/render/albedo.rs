@@ -7,16 +7,16 @@ use super::microfacets::{dielectric_weight, glass, reflection, schlick_weight, s
 use super::spectrum;
 use crate::scene::{Features, Scene};
 
-/// Values along a row, at cosines (i / (n - 1))².
+/// Values along a row, at cosines (i / (n - 1))⁴: what a smooth lobe loses it loses at cosines about its α.
 const COSINES: usize = 64;
-/// Rows, at roughnesses j / (m - 1).
+/// Rows, at roughnesses (j / (m - 1))².
 const ROUGHNESSES: usize = 32;
 /// Values of a table.
 const SIZE: u32 = (COSINES * ROUGHNESSES) as u32;
 /// Nodes of the quadrature along either side of the unit square.
 const NODES: usize = 48;
 /// The lowest cosine, in place of 0, where nothing is defined.
-const GRAZING: f64 = 1e-4;
+const GRAZING: f64 = 1e-6;
 
 /// Tables and where they are. GGX and Schlick come first, then sheen if the scene has any, then for each index of
 /// refraction the Fresnel weight from outside and, of what transmits, from inside, and both albedos of glass.
@@ -99,9 +99,9 @@ impl BsdfTables {
                 .sum::<f64>() as f32
         };
         let place = |i: usize| {
-            let roughness = (i / COSINES) as f64 / (ROUGHNESSES - 1) as f64;
-            let root = (i % COSINES) as f64 / (COSINES - 1) as f64;
-            (roughness, (root * root).max(GRAZING))
+            let row = (i / COSINES) as f64 / (ROUGHNESSES - 1) as f64;
+            let column = (i % COSINES) as f64 / (COSINES - 1) as f64;
+            (row.powi(2), column.powi(4).max(GRAZING))
         };
         let all = (0..SIZE as usize).into_par_iter().map(|i| mean(place(i)));
         self.values.par_extend(all);

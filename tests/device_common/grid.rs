@@ -53,6 +53,33 @@ impl SphereGrid {
         (directions, weights)
     }
 
+    /// The same with each interval cut in `n`.
+    pub fn refined(&self, n: usize) -> Self {
+        let cut = |edges: &[f64]| {
+            let mut all = vec![edges[0]];
+            for e in edges.windows(2) {
+                all.extend(even(e[0], e[1], n).into_iter().skip(1));
+            }
+            all
+        };
+        Self {
+            nu: cut(&self.nu),
+            phi: cut(&self.phi),
+            axes: self.axes,
+        }
+    }
+
+    /// Integrals over the cells from those over the cells of `refined(n)`.
+    pub fn gathered(&self, n: usize, refined: &[f64]) -> Vec<f64> {
+        let columns = self.phi.len() - 1;
+        let mut cells = vec![0.0; self.cells()];
+        for (i, value) in refined.iter().enumerate() {
+            let (row, column) = (i / (n * columns), i % (n * columns));
+            cells[row / n * columns + column / n] += value;
+        }
+        cells
+    }
+
     /// Integrals over the cells of a function known at the points.
     pub fn integrate(weights: &[f64], values: impl Iterator<Item = f64>) -> Vec<f64> {
         let terms: Vec<f64> = weights.iter().zip(values).map(|(w, v)| w * v).collect();
@@ -81,12 +108,13 @@ impl SphereGrid {
         if r < 0.5 {
             return self.cells();
         }
-        // Near the pole the cosine has no digits left for its distance from 1.
+        // Near the poles the cosine has no digits left for its distance from 1 and -1.
         let flat = d.x * d.x + d.y * d.y;
+        let from_pole = flat / (r * (r + d.z.abs()));
         let nu = if d.z > 0.0 {
-            flat / (r * (r + d.z))
+            from_pole
         } else {
-            1.0 - d.z / r
+            2.0 - from_pole
         };
         let turn = std::f64::consts::TAU;
         let phi = self.phi[0] + (d.y.atan2(d.x) - self.phi[0]).rem_euclid(turn);
@@ -124,6 +152,32 @@ pub fn clustered(from: f64, to: f64, center: f64, width: f64, n: usize) -> Vec<f
         .iter()
         .map(|y| center + width * y.sinh())
         .collect();
+    (edges[0], edges[n]) = (from, to);
+    edges
+}
+
+/// As [`clustered`] about several centres, each with its width.
+pub fn clustered_about(from: f64, to: f64, centers: &[(f64, f64)], n: usize) -> Vec<f64> {
+    let y = |x: f64| -> f64 {
+        let terms = centers.iter().map(|(c, width)| ((x - c) / width).asinh());
+        terms.sum()
+    };
+    if centers.is_empty() {
+        return even(from, to, n);
+    }
+    let inverse = |target: f64| {
+        let (mut low, mut high) = (from, to);
+        for _ in 0..80 {
+            let middle = 0.5 * (low + high);
+            if y(middle) < target {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    };
+    let mut edges: Vec<f64> = even(y(from), y(to), n).into_iter().map(inverse).collect();
     (edges[0], edges[n]) = (from, to);
     edges
 }

@@ -55,6 +55,7 @@ pub struct Setup {
     constants: BTreeMap<&'static str, Constant>,
     sampler: &'static str,
     patches: Vec<(&'static str, &'static str, &'static str)>,
+    overrides: Vec<(String, f64)>,
     /// The generated files of the acceleration structure.
     accel: VirtualFiles,
 }
@@ -95,6 +96,7 @@ impl Setup {
             constants,
             sampler: "independent",
             patches: Vec::new(),
+            overrides: Vec::new(),
             accel: VirtualFiles::from([(
                 "accel.wgsl".into(),
                 "#include \"accel/bvh.wgsl\"\n".into(),
@@ -132,6 +134,12 @@ impl Setup {
         self
     }
 
+    /// Sets an override constant.
+    pub fn overriding(mut self, name: &str, value: f64) -> Self {
+        self.overrides.push((name.into(), value));
+        self
+    }
+
     /// Compiles an entry point of `tests/kernels/NAME.wgsl`.
     pub fn kernel(&self, name: &str, entry: &str) -> Kernel {
         let library = ShaderLibrary::embedded();
@@ -156,7 +164,13 @@ impl Setup {
             assert!(text.contains(from), "{file} does not contain {from}");
             files.insert((*file).into(), text.replace(from, to));
         }
-        Kernel::new(&library, &files, &format!("{name}, {entry}"), entry)
+        let options = CompileOptions {
+            entry_point: entry,
+            overrides: &self.overrides,
+            layouts: &layouts(),
+            ..CompileOptions::default()
+        };
+        Kernel::new(&library, &files, &format!("{name}, {entry}"), &options)
     }
 }
 
@@ -164,6 +178,7 @@ impl Setup {
 pub const FRAME: u32 = 0;
 pub const TEXTURES: u32 = 5;
 pub const SRGB_TABLE: u32 = 8;
+pub const BSDF_TABLES: u32 = 10;
 pub const ELEMENTS: u32 = 16;
 pub const TEXEL_WORDS: u32 = 19;
 
@@ -180,16 +195,16 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    fn new(library: &ShaderLibrary, files: &VirtualFiles, label: &str, entry: &str) -> Self {
+    fn new(
+        library: &ShaderLibrary,
+        files: &VirtualFiles,
+        label: &str,
+        options: &CompileOptions<'_>,
+    ) -> Self {
         let composed =
             compose(library, files, "kernel.wgsl").unwrap_or_else(|e| panic!("{}", e.report()));
-        let options = CompileOptions {
-            entry_point: entry,
-            layouts: &layouts(),
-            ..CompileOptions::default()
-        };
         let compiled =
-            compile_shader(&composed, &options).unwrap_or_else(|e| panic!("{}", e.report()));
+            compile_shader(&composed, options).unwrap_or_else(|e| panic!("{}", e.report()));
         let kind = |kind| match kind {
             shader::BindingKind::Uniform => BindingKind::Uniform,
             _ => BindingKind::Storage,

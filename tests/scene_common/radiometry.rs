@@ -51,6 +51,22 @@ pub fn schlick(f0: f64, f90: f64, cos_theta: f64) -> f64 {
     f0 + (f90 - f0) * (1.0 - cos_theta).powi(5)
 }
 
+/// Unpolarised reflectance of a smooth dielectric by Fresnel's equations; `eta` is the index on the far side over
+/// that on the near one. Exactly 0 between equal ones.
+pub fn fresnel(cos_theta: f64, eta: f64) -> f64 {
+    if eta == 1.0 {
+        return 0.0;
+    }
+    let sin2 = (1.0 - cos_theta * cos_theta) / (eta * eta);
+    if sin2 >= 1.0 {
+        return 1.0;
+    }
+    let cos_t = (1.0 - sin2).sqrt();
+    let s = (cos_theta - eta * cos_t) / (cos_theta + eta * cos_t);
+    let p = (eta * cos_theta - cos_t) / (eta * cos_theta + cos_t);
+    0.5 * (s * s + p * p)
+}
+
 /// Directional albedo of a GGX layer with Schlick's Fresnel term between f0 and 1, seen at the
 /// cosine `mu`: the integral of D F G₂ (wo·h) / µ over the half vectors h, with the substitution
 /// tan²θ = α² t / (1 − t) that makes D cosθ dω uniform in (t, φ). Midpoint rule.
