@@ -125,7 +125,7 @@ fn many_instances_take_the_memory_of_one_and_their_placements() {
         geometry_bytes(&one)
     );
     assert!(placements < 160 * 10_000, "{placements}");
-    let film = render_with(&scene, &square(16, 4, 2), &BuildOptions::default());
+    let film = render_with(&scene, &square(16, 4, 2), &BuildOptions::default(), None);
     assert_eq!(film.pixels.len(), 256);
 }
 
