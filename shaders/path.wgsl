@@ -109,8 +109,10 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
     if (HAS_DISPERSION && (*path).wavelength == 0.0 && is_dispersive(crossing)) {
         // From here on the path stands for one wavelength.
         (*sampler).dimension = (*path).first_dimension + ((*path).depth - 1u) * DIMENSIONS_PER_VERTEX + 5u;
-        beta *= sample_wavelength(next_1d(sampler), &(*path).wavelength);
-        crossing = crossing_at((*path).media, (*path).wavelength, surface);
+        var wavelength = 0.0;
+        beta *= sample_wavelength(next_1d(sampler), &wavelength);
+        (*path).wavelength = wavelength;
+        crossing = crossing_at((*path).media, wavelength, surface);
         (*sampler).dimension = (*path).first_dimension + ((*path).depth - 1u) * DIMENSIONS_PER_VERTEX;
     }
     let wo = to_local(surface.shading, surface.wo);
