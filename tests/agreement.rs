@@ -4,7 +4,7 @@
 //!
 //! Every comparison is of two renders with samples of their own: Welch's t of the mean of each tile
 //! and channel, false alarms at most [`ALPHA`] a comparison (Šidák), and the mean of the whole
-//! picture, |z| < 4.5. With 36 comparisons a right program fails on a new device with a chance of
+//! picture, |z| < 4.5. With 41 comparisons a right program fails on a new device with a chance of
 //! 0.4 %; on one device nothing varies. `--nocapture` prints each verdict and the smallest
 //! relative bias that it would have seen; `ETENDUE_LONG=1` draws 16 times the samples.
 
@@ -14,8 +14,13 @@ use etendue::image::statistics::Verdict;
 use etendue::render::{Film, Settings};
 use etendue::scene::Scene;
 
+use etendue::scene::Material;
+use glam::{DVec3, Vec3, Vec4};
+use scene_common::builder::Icosphere;
 use scene_common::statistics::{MAX_Z, compare_films};
-use scene_common::{effort, load, render, square, with_integrator, without_roulette};
+use scene_common::{
+    SceneBuilder, effort, lamp, load, render, square, with_integrator, without_roulette,
+};
 
 /// False alarms of a comparison's tiles together.
 const ALPHA: f64 = 1e-4;
@@ -190,4 +195,74 @@ fn sphere_grid() {
 #[test]
 fn veach_mis() {
     check("veach_mis");
+}
+
+/// A floor and a wall of every layer, with a thin leaf and a block of rough glass that absorbs, under a lamp and a
+/// dim sky.
+fn all_lobes() -> Scene {
+    let mut builder = SceneBuilder::new();
+    let layered = Material {
+        base_color: Vec4::new(0.8, 0.5, 0.3, 1.0),
+        metallic: 0.2,
+        roughness: 0.4,
+        clearcoat: 0.5,
+        clearcoat_roughness: 0.3,
+        sheen_color: Vec3::new(0.2, 0.3, 0.5),
+        sheen_roughness: 0.5,
+        iridescence: 0.6,
+        iridescence_thickness: [0.0, 350.0],
+        ..Material::default()
+    };
+    let leaf = Material {
+        base_color: Vec4::new(0.3, 0.7, 0.2, 1.0),
+        metallic: 0.0,
+        roughness: 0.8,
+        transmission: 0.3,
+        diffuse_transmission: 0.5,
+        diffuse_transmission_color: Vec3::new(0.6, 0.9, 0.3),
+        ..Material::default()
+    };
+    let glass = Material {
+        base_color: Vec4::ONE,
+        metallic: 0.0,
+        roughness: 0.9,
+        transmission: 1.0,
+        solid: true,
+        absorption: Vec3::new(0.2, 1.0, 2.0),
+        dispersion: 0.5,
+        ..Material::default()
+    };
+    builder.ground(layered.clone(), 2.0);
+    builder.quad(
+        layered,
+        DVec3::new(0.0, 1.0, -1.5),
+        DVec3::X * 2.0,
+        DVec3::Y,
+    );
+    builder.quad(
+        leaf,
+        DVec3::new(-0.7, 0.6, 0.2),
+        DVec3::new(0.2, 0.0, 0.4),
+        DVec3::Y * 0.5,
+    );
+    let sphere = Icosphere::new(DVec3::new(0.5, 0.6, 0.0), 0.5, 1);
+    builder.sphere(glass, &sphere, false);
+    let above = DVec3::new(0.0, 2.5, 0.3);
+    builder.quad(lamp(6.0), above, DVec3::X * 0.7, DVec3::Z * 0.7);
+    builder.sky(0.3);
+    builder.pinhole(DVec3::new(0.2, 1.1, 3.0), DVec3::new(0.0, 0.6, 0.0), 0.7);
+    builder.scene
+}
+
+/// Light samples alone are left out: below a surface that light passes they do not find the sky.
+#[test]
+fn every_lobe() {
+    let scene = all_lobes();
+    let bench = Bench::new("every lobe", &scene);
+    let reference = bench.render(&settings(256, 1));
+    let naive = with_integrator(&settings(4096, 4), "naive");
+    check_variant(&bench, &reference, &roughened(&scene), &naive);
+    let bsdf = with_integrator(&settings(512, 3), "path_bsdf");
+    bench.assert_agree("path_bsdf", &reference, &bench.render(&bsdf));
+    check_samplers_and_roulette(&bench, &reference);
 }

@@ -12,6 +12,7 @@ mod coverage;
 mod depth;
 mod emission;
 mod furnace;
+mod glass;
 mod lens;
 mod lights;
 mod many_lights;

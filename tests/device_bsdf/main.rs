@@ -14,4 +14,5 @@ mod controls;
 mod density;
 mod energy;
 mod furnace;
+mod layers;
 mod reciprocity;

@@ -75,3 +75,11 @@ fn evaluate(@builtin(global_invocation_id) id: vec3u) {
     let bsdf = bsdf_of(test_parameters(), from_);
     outputs[id.x] = vec4f(bsdf_eval(bsdf, from_, to), bsdf_pdf(bsdf, from_, to));
 }
+
+// The Fresnel term at a cosine for an index.
+@compute @workgroup_size(64)
+fn fresnel(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x < params.x) {
+        outputs[id.x] = vec4f(fresnel_dielectric(inputs[id.x].x, inputs[id.x].y));
+    }
+}
