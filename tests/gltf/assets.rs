@@ -30,7 +30,7 @@ fn models_hold_what_their_json_says() {
     for (name, triangles, instances, lights, images) in [
         ("AnisotropyStrengthTest.glb", 97240, 50, 0, 1),
         ("AttenuationTest.glb", 292, 23, 0, 2),
-        ("ClearCoatTest.glb", 37116, 27, 0, 5),
+        ("ClearCoatTest.glb", 37116, 27, 0, 6),
         ("CornellBox.glb", 36, 6, 0, 0),
         ("FlightHelmet/FlightHelmet.gltf", 94722, 6, 0, 15),
         ("Fox.glb", 576, 1, 0, 1),
@@ -83,15 +83,52 @@ fn ktx2_textures_of_plain_pixels_are_read() {
 }
 
 #[test]
-fn models_warn_of_what_they_do_not_show() {
+fn models_of_extensions_need_their_lobes() {
     let Some(models) = shared("assets/models") else {
         return;
     };
-    warned(&valid_model(&models, "ClearCoatTest.glb"), "clear coats");
-    warned(
-        &valid_model(&models, "AttenuationTest.glb"),
-        "light passes through",
-    );
+    for (name, expected) in [
+        (
+            "AnisotropyStrengthTest.glb",
+            &["anisotropy", "tangents"][..],
+        ),
+        (
+            "AttenuationTest.glb",
+            &["transmission", "media", "absorption"],
+        ),
+        (
+            "ClearCoatTest.glb",
+            &["clearcoat", "clearcoat_texture", "clearcoat_normal_texture"],
+        ),
+        (
+            "SpecularTest.glb",
+            &["specular_texture", "specular_color_texture"],
+        ),
+        (
+            "TransmissionRoughnessTest.glb",
+            &["transmission", "media", "ior"],
+        ),
+        ("chess-board.glb", &["clearcoat"]),
+    ] {
+        let scene = valid_model(&models, name);
+        silent(&scene);
+        let flags = Features::of(&scene).flags();
+        for feature in expected {
+            assert!(flags.contains(&(feature, true)), "{name}: {feature}");
+        }
+    }
+    // What passes through the metallic glass of this table is its alpha alone.
+    let table = valid_model(&models, "glass-table.glb");
+    silent(&table);
+    let features = Features::of(&table);
+    assert!(features.alpha_blend && !features.transmission && table.materials[0].metallic == 1.0);
+}
+
+#[test]
+fn models_that_are_read_whole_raise_no_warning() {
+    let Some(models) = shared("assets/models") else {
+        return;
+    };
     for name in [
         "morph-stress-test.glb",
         "Fox.glb",

@@ -44,7 +44,7 @@ fn tangents_are_made_where_a_normal_map_needs_them() {
     assert!(scene.meshes[0].tangents.is_empty() && !Features::of(&scene).normal_texture);
     warned(
         &scene,
-        "it has no TEXCOORD_0; the normal map of material 0 \"paint\" is not used",
+        "it has no TEXCOORD_0; normal maps and anisotropy of material 0 \"paint\" are not used",
     );
 }
 

@@ -9,28 +9,41 @@ use crate::seeds;
 #[test]
 fn extensions_that_are_only_used_are_warnings() {
     let mut builder = Builder::textured();
-    builder.json["extensionsUsed"] = json!(["KHR_materials_clearcoat", "ACME_secret"]);
+    builder.json["extensionsUsed"] = json!([
+        "KHR_materials_clearcoat",
+        "KHR_materials_volume_scatter",
+        "ACME_secret"
+    ]);
     builder.json["materials"][0]["extensions"] = json!({"KHR_materials_sheen": {}});
     builder.json["extras"] = json!({"extensions": {"NOT_one": {}}});
     let scene = builder.scene();
-    let names: Vec<&str> = scene
+    let found: Vec<(&str, bool)> = scene
         .extensions
         .iter()
-        .map(|extension| extension.name.as_str())
+        .map(|extension| (extension.name.as_str(), extension.supported))
         .collect();
     assert_eq!(
-        names,
+        found,
         [
-            "ACME_secret",
-            "KHR_materials_clearcoat",
-            "KHR_materials_sheen"
+            ("ACME_secret", false),
+            ("KHR_materials_clearcoat", true),
+            ("KHR_materials_sheen", true),
+            ("KHR_materials_volume_scatter", false)
         ]
     );
     warned(
         &scene,
-        "KHR_materials_clearcoat is not supported: the picture does not show clear coats",
+        "KHR_materials_volume_scatter is not supported: the picture does not show scattering inside of surfaces",
     );
-    warned(&scene, "KHR_materials_sheen is not supported");
+    warned(
+        &scene,
+        "ACME_secret is not supported: the picture does not show what it describes",
+    );
+    warned(
+        &scene,
+        "KHR_materials_sheen is used but not listed in `extensionsUsed`; it is honoured",
+    );
+    assert_eq!(scene.warnings.len(), 3);
 }
 
 #[test]

@@ -5,13 +5,14 @@ use serde_json::json;
 use crate::common::*;
 use crate::pictures::*;
 use crate::{codecs, image_light};
-use crate::{draco, meshopt_data};
+use crate::{draco, materials_extensions, meshopt_data};
 
 /// All of them, by name.
 pub fn all() -> Vec<(&'static str, Builder)> {
     vec![
         ("square", Builder::square()),
         ("textured", textured()),
+        ("layers", materials_extensions::layered()),
         ("normal map", normal_map()),
         ("given tangents", given_tangents()),
         ("quantised strip", quantized_strip()),
@@ -45,7 +46,7 @@ fn picture(name: &str, extension: &str) -> Builder {
     builder
 }
 
-/// Every texture slot, every material extension.
+/// Every texture slot of the core model, with index of refraction, specular layer and emissive strength.
 pub fn textured() -> Builder {
     let mut builder = Builder::textured();
     let uvs = builder.accessor(&[0, 255, 255, 255, 255, 0, 0, 0], U8, "VEC2", 4);

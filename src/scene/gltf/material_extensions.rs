@@ -210,7 +210,7 @@ fn unread(raw: &RawMaterial) -> [Option<Slot>; 17] {
     let no_specular = m.unlit || m.specular == 0.0;
     // The texture of a specular-glossiness material also holds its glossiness.
     let no_color = no_specular || (m.specular_color == Vec3::ZERO && !m.glossiness_texture);
-    let no_film = no_specular || m.iridescence == 0.0;
+    let no_film = m.iridescence == 0.0 || (no_specular && m.metallic == 0.0);
     let no_coat = m.clearcoat == 0.0;
     let no_sheen = m.sheen_color == Vec3::ZERO;
     let no_translucence = m.diffuse_transmission == 0.0;
