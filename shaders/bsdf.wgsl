@@ -170,7 +170,11 @@ fn add_specular(bsdf: ptr<function, Bsdf>, m: BsdfParameters, wo: vec3f, above: 
             weight = albedo_at(table, wo.z, m.roughness) / ggx;
         }
     }
-    let lost = lost_share(ggx);
+    var lost = lost_share(ggx);
+    if (HAS_ANISOTROPY && !ggx_is_delta(m.alpha)) {
+        // The table is that of an isotropic lobe, which for a stretched one would put back too much.
+        lost *= m.alpha.y / m.alpha.x;
+    }
     let for_metal = m.metallic * (1.0 + m.base_color * lost);
     var of_dielectric = 1.0 + f0 * lost;
     var albedo = max_component(of_dielectric * mix(f0, vec3f(f90), weight)) * ggx;

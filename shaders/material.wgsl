@@ -88,6 +88,11 @@ fn bsdf_parameters(s: Surface, crossing: Crossing) -> BsdfParameters {
         // Across the stretch a mirror is not smoother than single precision resolves.
         m.alpha = vec2f(mix(m.alpha.x, 1.0, square(s.anisotropy)), max(m.alpha.y, ANISOTROPIC_SMOOTHEST));
     }
+    if (is_solid(s)) {
+        m.thin = false;
+        // The tables of the inside follow those of the outside.
+        m.albedo_table += select(0u, ALBEDO_SIZE, s.back_face);
+    }
     if (HAS_TRANSMISSION) {
         add_transmission_parameters(&m, s, crossing);
     }
@@ -126,13 +131,7 @@ fn add_transmission_parameters(m: ptr<function, BsdfParameters>, s: Surface, cro
     if (HAS_TRANSMISSION_TEXTURE) {
         (*m).transmission *= sample_slot(materials[s.material].transmission_texture, s).r;
     }
-    (*m).thin = !is_solid(s);
-    (*m).glass_table = materials[s.material].glass_table;
-    if (s.back_face && !(*m).thin) {
-        // The tables of the inside follow those of the outside.
-        (*m).glass_table += ALBEDO_SIZE;
-        (*m).albedo_table += ALBEDO_SIZE;
-    }
+    (*m).glass_table = materials[s.material].glass_table + select(0u, ALBEDO_SIZE, s.back_face && !(*m).thin);
     if (crossing.near != NONE && crossing.far != NONE) {
         // The tables are for air on one side. Between two media the indices differ less, and so little is lost
         // that nothing is put back.

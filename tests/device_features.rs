@@ -61,7 +61,16 @@ fn each_feature_that_is_not_used_changes_nothing() {
             Some((what, scene)) => assert_same(scene, &[name], what),
             // What every lit, opaque triangle needs cannot be left out.
             None => assert!(
-                ["lit", "flat_normals", "diffuse", "specular", "normals"].contains(&name),
+                [
+                    "lit",
+                    "flat_normals",
+                    "diffuse",
+                    "specular",
+                    "normals",
+                    "single_sided",
+                    "double_sided"
+                ]
+                .contains(&name),
                 "{name}"
             ),
         }

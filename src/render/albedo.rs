@@ -114,7 +114,7 @@ fn indices(scene: &Scene) -> Vec<(f32, bool)> {
     for instance in &scene.instances {
         let material = &scene.materials[scene.meshes[instance.mesh].material];
         let dielectric = material.metallic < 1.0 || material.metallic_roughness_texture.is_some();
-        let transmits = material.transmission > 0.0;
+        let transmits = material.transmission > 0.0 || material.bounds_medium();
         if material.unlit || !dielectric || material.ior == 0.0 {
             continue;
         }

@@ -16,8 +16,9 @@ pub enum LightSelection {
     Tree,
 }
 
-/// Lights that are somewhere (emissive triangles, point and spot lights) from which on a tree of them pays.
-const FEWEST_FOR_TREE: usize = 3;
+/// Lights that are somewhere (emissive triangles, point and spot lights) from which on a tree of them pays. Of fewer, many
+/// are halves of lamps or walls of a room, whose share at a point their bounds tell badly.
+const FEWEST_FOR_TREE: usize = 17;
 
 impl LightSelection {
     /// All of them.

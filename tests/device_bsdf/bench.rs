@@ -20,8 +20,9 @@ pub const TABLE_SIZE: u32 = 64 * 32;
 /// Indices of refraction that have tables.
 pub const INDICES: [f32; 2] = [1.5, 2.4];
 /// Every lobe.
-pub const LOBES: [&str; 6] = [
+pub const LOBES: [&str; 7] = [
     "HAS_SPECULAR",
+    "HAS_ANISOTROPY",
     "HAS_TRANSMISSION",
     "HAS_DIFFUSE_TRANSMISSION",
     "HAS_CLEARCOAT",

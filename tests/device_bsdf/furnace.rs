@@ -142,8 +142,9 @@ fn without_multiple_scattering_light_is_lost() {
     }
 }
 
-/// A stretched lobe looks up the tables of an isotropic one of its roughness across the stretch, which loses less: a
-/// white metal of a strength of 0.6 reflects 0.85 to 1.07 of what arrives, of a strength of 1 from 0.53 on.
+/// A stretched lobe looks up the tables of an isotropic one of its roughness across the stretch, which loses less, and
+/// gets back of that only the share α across / α along: a white metal of a strength of 0.3 reflects 0.90 to 1 of what
+/// arrives, of 0.6 from 0.79 on, of 1 from 0.53 on, and none more than arrives.
 #[test]
 fn stretched_metals() {
     let bench = Bench::new(&Setup::new());
@@ -152,6 +153,9 @@ fn stretched_metals() {
         case.name = "stretched metal";
         case.material.anisotropy = anisotropy;
         let [low, high] = row(&bench, &case);
-        assert!(low > 0.53 && high < 1.075, "{anisotropy}: {low} {high}");
+        assert!(
+            low > 0.53 && high < 1.0 + TABLES,
+            "{anisotropy}: {low} {high}"
+        );
     }
 }
