@@ -170,11 +170,10 @@ fn add_specular(bsdf: ptr<function, Bsdf>, m: BsdfParameters, wo: vec3f, above: 
             weight = albedo_at(table, wo.z, m.roughness) / ggx;
         }
     }
-    var lost = lost_share(ggx);
-    if (HAS_ANISOTROPY && !ggx_is_delta(m.alpha)) {
-        // The table is that of an isotropic lobe, which for a stretched one would put back too much.
-        lost *= m.alpha.y / m.alpha.x;
+    if (HAS_ANISOTROPY && m.alpha.x != m.alpha.y) {
+        ggx = stretched_albedo(wo, m.alpha);
     }
+    let lost = lost_share(ggx);
     let for_metal = m.metallic * (1.0 + m.base_color * lost);
     var of_dielectric = 1.0 + f0 * lost;
     var albedo = max_component(of_dielectric * mix(f0, vec3f(f90), weight)) * ggx;

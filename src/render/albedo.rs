@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::microfacets::{dielectric_weight, glass, reflection, schlick_weight, sheen};
-use super::spectrum;
+use super::{spectrum, stretched};
 use crate::scene::{Features, Scene};
 
 /// Values along a row, at cosines (i / (n - 1))⁴: what a smooth lobe loses it loses at cosines about its α.
@@ -26,6 +26,8 @@ pub struct BsdfTables {
     pub values: Vec<f32>,
     /// First value of the wavelengths.
     pub spectrum: u32,
+    /// First value of the albedo of stretched lobes.
+    pub stretched: u32,
     /// Index of refraction, whether anything of it transmits, its first value.
     indices: Vec<(f32, bool, u32)>,
 }
@@ -50,6 +52,10 @@ impl BsdfTables {
         tables.spectrum = tables.values.len() as u32;
         if features.dispersion {
             tables.values.extend(spectrum::table());
+        }
+        tables.stretched = tables.values.len() as u32;
+        if features.anisotropy {
+            tables.values.extend(stretched::table());
         }
         tables
     }

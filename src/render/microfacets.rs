@@ -5,18 +5,18 @@
 use glam::DVec3;
 
 /// Λ of the Smith model times 2, plus 1; `w` may be on either side.
-fn lambda_term(alpha: f64, w: DVec3) -> f64 {
-    (w.z * w.z + alpha * alpha * (w.x * w.x + w.y * w.y)).sqrt() / w.z.abs()
+fn lambda_term([x, y]: [f64; 2], w: DVec3) -> f64 {
+    (w.z * w.z + (x * w.x).powi(2) + (y * w.y).powi(2)).sqrt() / w.z.abs()
 }
 
 /// A normal visible from `wo` (Dupuy and Benyoub 2023).
-fn visible_normal(alpha: f64, wo: DVec3, [u, v]: [f64; 2]) -> DVec3 {
-    let stretched = DVec3::new(wo.x * alpha, wo.y * alpha, wo.z).normalize();
+fn visible_normal([x, y]: [f64; 2], wo: DVec3, [u, v]: [f64; 2]) -> DVec3 {
+    let stretched = DVec3::new(wo.x * x, wo.y * y, wo.z).normalize();
     let z = (1.0 - v) * (1.0 + stretched.z) - stretched.z;
     let r = (1.0 - z * z).max(0.0).sqrt();
     let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
     let h = DVec3::new(r * cos, r * sin, z) + stretched;
-    DVec3::new(h.x * alpha, h.y * alpha, h.z).normalize()
+    DVec3::new(h.x * x, h.y * y, h.z).normalize()
 }
 
 /// A direction at a cosine.
@@ -56,26 +56,32 @@ pub fn dielectric_weight(cos_theta: f64, eta: f64) -> f64 {
 /// `u` is uniform on the unit square; the mean over it is the albedo.
 pub fn reflection(alpha: f64, cos_o: f64, u: [f64; 2]) -> (f64, f64) {
     let wo = direction(cos_o);
-    let h = visible_normal(alpha, wo, u);
+    let h = visible_normal([alpha; 2], wo, u);
+    (reflected(wo, h, [alpha; 2]), wo.dot(h))
+}
+
+/// The same for a lobe of roughness `alpha` along x and y.
+pub fn stretched_reflection(alpha: [f64; 2], wo: DVec3, u: [f64; 2]) -> f64 {
+    reflected(wo, visible_normal(alpha, wo, u), alpha)
+}
+
+/// The weight of the mirror direction about a visible normal.
+fn reflected(wo: DVec3, h: DVec3, alpha: [f64; 2]) -> f64 {
     let wi = 2.0 * wo.dot(h) * h - wo;
-    if wi.z <= 0.0 {
-        return (0.0, wo.dot(h));
+    if wi.z > 0.0 {
+        masking(alpha, wo, wi)
+    } else {
+        0.0
     }
-    (masking(alpha, wo, wi), wo.dot(h))
 }
 
 /// What a visible normal reflects and refracts of a white dielectric.
 pub fn glass(alpha: f64, eta: f64, cos_o: f64, u: [f64; 2]) -> f64 {
-    let wo = direction(cos_o);
+    let (wo, alpha) = (direction(cos_o), [alpha; 2]);
     let h = visible_normal(alpha, wo, u);
     let cos_h = wo.dot(h);
     let f = fresnel_dielectric(cos_h, eta);
-    let up = 2.0 * cos_h * h - wo;
-    let reflected = if up.z > 0.0 {
-        f * masking(alpha, wo, up)
-    } else {
-        0.0
-    };
+    let reflected = f * reflected(wo, h, alpha);
     let cos2_i = (eta * eta - 1.0 + cos_h * cos_h) / (eta * eta);
     if cos2_i <= 0.0 {
         return reflected;
@@ -91,7 +97,7 @@ pub fn glass(alpha: f64, eta: f64, cos_o: f64, u: [f64; 2]) -> f64 {
 }
 
 /// G2 / G1.
-fn masking(alpha: f64, wo: DVec3, wi: DVec3) -> f64 {
+fn masking(alpha: [f64; 2], wo: DVec3, wi: DVec3) -> f64 {
     let (o, i) = (lambda_term(alpha, wo), lambda_term(alpha, wi));
     (1.0 + o) / (o + i)
 }

@@ -31,6 +31,7 @@ mod settings;
 pub mod shader_check;
 mod sharing;
 mod spectrum;
+mod stretched;
 mod textures;
 mod vertex_format;
 

@@ -183,6 +183,10 @@ pub fn constants(
             "HAS_ENVIRONMENT_IMAGE",
             Constant::Bool(!scene.environment.is_black() || asked(&["environment_image"])),
         ),
+        (
+            "STRETCHED_TABLE",
+            Constant::U32(scene.bsdf_tables.stretched),
+        ),
         ("SPECTRUM_TABLE", Constant::U32(scene.bsdf_tables.spectrum)),
         ("VERTEX_STRIDE", Constant::U32(format.stride)),
         ("NORMAL_OFFSET", offset(format.normals)),

@@ -87,6 +87,7 @@ pub fn constants(on: bool, structure: Structure) -> Vec<(&'static str, Constant)
         ("HAS_LIGHTS_OUTSIDE_TREE", Constant::Bool(on)),
         ("HAS_ENVIRONMENT", Constant::Bool(on)),
         ("HAS_ENVIRONMENT_IMAGE", Constant::Bool(on)),
+        ("STRETCHED_TABLE", Constant::U32(0)),
         ("SPECTRUM_TABLE", Constant::U32(0)),
         ("VERTEX_STRIDE", Constant::U32(if on { 15 } else { 0 })),
         ("NORMAL_OFFSET", Constant::U32(0)),

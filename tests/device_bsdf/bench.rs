@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use etendue::gpu::Buffer;
 use etendue::render::BsdfTables;
+use etendue::render::program::Constant;
 use etendue::scene::{Features, Instance, Material, Mesh, Scene};
 use glam::DMat4;
 use rayon::prelude::*;
@@ -73,6 +74,7 @@ fn tables() -> &'static BsdfTables {
         let features = Features {
             specular: true,
             sheen: true,
+            anisotropy: true,
             ..Features::default()
         };
         BsdfTables::new(&scene, &features)
@@ -86,7 +88,11 @@ impl Bench {
     }
 
     pub fn with(setup: &Setup, lobes: &[&'static str]) -> Self {
-        let setup = setup.clone().on(lobes);
+        let stretched = Constant::U32(tables().stretched);
+        let setup = setup
+            .clone()
+            .on(lobes)
+            .with([("STRETCHED_TABLE", stretched)]);
         Self {
             sample: setup.kernel("bsdf", "sample"),
             evaluate: setup.kernel("bsdf", "evaluate"),

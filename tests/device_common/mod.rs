@@ -81,6 +81,7 @@ impl Setup {
             constants.insert(name, Constant::Bool(false));
         }
         for name in [
+            "STRETCHED_TABLE",
             "SPECTRUM_TABLE",
             "VERTEX_STRIDE",
             "NORMAL_OFFSET",
