@@ -20,6 +20,7 @@ use super::sharing::Sharing;
 use super::textures::TextureSet;
 use super::vertex_format::VertexFormat;
 use crate::accel::{BuildOptions, Bvh, Placed, TwoLevel};
+use crate::host::Cache;
 use crate::host::stages::{stage, timed_stage};
 use crate::scene::{EnvironmentImage, Features, LightKind, Material, PunctualLight, Scene};
 
@@ -114,7 +115,9 @@ impl Prepared {
         })?;
         flat.reorder(&bvh.order);
         let mut textures = TextureSet::default();
-        let bsdf_tables = stage("albedos", || BsdfTables::new(scene, &features));
+        let bsdf_tables = stage("albedos", || {
+            BsdfTables::new(scene, &features, &Cache::from_env())
+        });
         let materials = materials(scene, &bsdf_tables, &mut textures);
         let environment = environment_table(scene, &features);
         let mut lights = LightList::default();

@@ -17,11 +17,13 @@ const NODES: [usize; 2] = [48, 24];
 /// which would let it gain.
 const MARGIN: f64 = 1.008;
 
+/// Number of values.
+pub const COUNT: usize = SIZES[0] * SIZES[1] * SIZES[2] * SIZES[3];
+
 /// All values.
 pub fn table() -> Vec<f32> {
-    let count: usize = SIZES.iter().product();
     let raised = |i| (MARGIN * value(place(i))).min(1.0) as f32;
-    (0..count).into_par_iter().map(raised).collect()
+    (0..COUNT).into_par_iter().map(raised).collect()
 }
 
 /// Where a value is, along each axis from 0 to 1.

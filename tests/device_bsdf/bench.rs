@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use etendue::gpu::Buffer;
+use etendue::host::Cache;
 use etendue::render::BsdfTables;
 use etendue::render::program::Constant;
 use etendue::scene::{Features, Instance, Material, Mesh, Scene};
@@ -77,7 +78,7 @@ fn tables() -> &'static BsdfTables {
             anisotropy: true,
             ..Features::default()
         };
-        BsdfTables::new(&scene, &features)
+        BsdfTables::new(&scene, &features, &Cache::off())
     })
 }
 

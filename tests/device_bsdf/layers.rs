@@ -1,5 +1,6 @@
 //! Fresnel averages, dispersion, and a coat over a diffuse base against a simulation of the light between them.
 
+use etendue::host::Cache;
 use etendue::render::layout;
 use etendue::render::{BsdfTables, layout::Material};
 use etendue::scene::{Features, Scene};
@@ -83,7 +84,7 @@ fn all_wavelengths_together_are_white() {
         dispersion: true,
         ..Features::default()
     };
-    let tables = BsdfTables::new(&Scene::default(), &features);
+    let tables = BsdfTables::new(&Scene::default(), &features, &Cache::off());
     assert_eq!(tables.spectrum, 0);
     let values = upload("wavelengths", &tables.values);
     let kernel = Setup::new()
