@@ -23,7 +23,7 @@ const TILE_SIZE: u32 = 8u;
 
 // Elements of the acceleration structure that a lane looks at before lanes that are done go on. Under
 // an environment most rays are short and what follows them takes longer: it waits for more lanes.
-override TRACE_ELEMENTS: u32 = select(8u, 16u, HAS_ENVIRONMENT);
+override TRACE_ELEMENTS: u32 = select(8u, 64u, HAS_ENVIRONMENT);
 
 @compute @workgroup_size(64, 1, 1)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {

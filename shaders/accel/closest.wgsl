@@ -15,7 +15,11 @@ struct Closest {
 fn test_pair(
   e: Element, index: u32, ray: Ray, setup: RaySetup, so_far: Closest, camera_ray: bool, seed: u32,
 ) -> Closest {
-  let fan = pair_fan(e, setup);
+  var fan = pair_fan(e, setup);
+  // Left out at once: a ray passes through the triangle that it leaves, where t has no certain sign.
+  let id = 2u * index;
+  fan.first = fan.first && id != ray.start && id != ray.end;
+  fan.second = fan.second && id + 1u != ray.start && id + 1u != ray.end;
   var best = so_far;
   if (fan.first || fan.second) {
     let second = !fan.first;
@@ -27,12 +31,11 @@ fn test_pair(
       return best;
     }
     if (is_certain && t.low > 0.0 && t.high < best.low) {
-      let id = 2u * index + select(0u, 1u, second);
-      if (id != ray.start && id != ray.end && !is_culled(flags, edges.x < 0.0, camera_ray)) {
-        best = Closest(t.low, t.high, id);
+      if (!is_culled(flags, edges.x < 0.0, camera_ray)) {
+        best = Closest(t.low, t.high, id + select(0u, 1u, second));
       }
     } else {
-      best = test_pair_exactly(e, index, ray, setup, fan, so_far, camera_ray, seed);
+      best = test_pair_exactly(e, index, setup, fan, so_far, camera_ray, seed);
     }
   }
   return best;
@@ -40,7 +43,7 @@ fn test_pair(
 
 // The same by refined hits, of which at equal t that with the smaller number is taken.
 fn test_pair_exactly(
-  e: Element, index: u32, ray: Ray, setup: RaySetup, fan: FanCandidates, so_far: Closest, camera_ray: bool, seed: u32,
+  e: Element, index: u32, setup: RaySetup, fan: FanCandidates, so_far: Closest, camera_ray: bool, seed: u32,
 ) -> Closest {
   var best = so_far;
   if (best.low < best.high) {
@@ -57,8 +60,7 @@ fn test_pair_exactly(
     waiting &= waiting - 1u;
     let id = 2u * index + select(0u, 1u, second);
     let hit = refined_hit(fan_triangle(fan, second));
-    let eligible = id != ray.start && id != ray.end;
-    if (eligible && hit.t > 0.0 && (hit.t < best.low || (hit.t == best.low && id < best.triangle))) {
+    if (hit.t > 0.0 && (hit.t < best.low || (hit.t == best.low && id < best.triangle))) {
       if (HAS_ALPHA || HAS_SINGLE_SIDED) {
         if (!accept_hit(pair_triangle(e, second), hit.b, hit.back_face, camera_ray, seed)) {
           continue;
