@@ -16,6 +16,8 @@ struct Traversal {
   boxes: BoxSetup,
   best: Closest,
   group: Group,
+  // The group that was put aside last, if stack_size > 0; those before it are on the stack.
+  top: Group,
   stack_size: u32,
   // The element to look at next.
   next: u32,
@@ -70,7 +72,10 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
       let children = visit_node(e, (*t).boxes, (*t).best.high);
       if (children.slots != 0u) {
         if ((*t).group.slots != 0u) {
-          stack_write((*t).stack_size, (*t).group);
+          if ((*t).stack_size > 0u) {
+            stack_write((*t).stack_size - 1u, (*t).top);
+          }
+          (*t).top = (*t).group;
           (*t).stack_size += 1u;
         }
         (*t).group = children;
@@ -99,9 +104,13 @@ fn go_on(t: ptr<function, Traversal>) {
       if (count_step()) {
         break;
       }
+      let group = (*t).top;
       (*t).stack_size -= 1u;
-      if (bitcast<f32>(stack_read_entry((*t).stack_size)) <= t_max) {
-        (*t).group = stack_read((*t).stack_size);
+      if ((*t).stack_size > 0u) {
+        (*t).top = stack_read((*t).stack_size - 1u);
+      }
+      if (bitcast<f32>(group.entry) <= t_max) {
+        (*t).group = group;
         break;
       }
     }
