@@ -136,8 +136,8 @@ fn wrong_environments_are_rejected() {
         ),
         (
             "columns alike",
-            "let above = bound <= number;",
-            "let above = (number & (1u << (length & 31u))) != 0u;",
+            "let above = load_environment_cdf(first + middle) <= number;",
+            "let above = (number & (1u << (last & 31u))) != 0u;",
         ),
         (
             "points evenly in their cells",

@@ -81,8 +81,12 @@ fn environment_at(uv: vec2f) -> EnvironmentPoint {
 fn environment_choose(bits: vec2u) -> EnvironmentPoint {
     let width = frame.environment_width;
     let rows = frame.environment_height + 1u;
-    let row = environment_invert(0u, rows, bits.y >> 1u, bits.x & 0xffffu);
-    let column = environment_invert(rows + row.index * width, width, bits.x >> 1u, bits.y & 0xffffu);
+    // Where the guides are.
+    let row_guide = rows + rows * width;
+    let column_guide = row_guide + environment_guide_length(rows);
+    let row = environment_invert(0u, rows, row_guide, bits.y >> 1u, bits.x & 0xffffu);
+    let own_guide = column_guide + row.index * environment_guide_length(width);
+    let column = environment_invert(rows + row.index * width, width, own_guide, bits.x >> 1u, bits.y & 0xffffu);
     return EnvironmentPoint(vec2u(column.index, row.index), vec2f(column.inside, row.inside));
 }
 
@@ -92,23 +96,35 @@ struct EnvironmentInterval {
     inside: f32,
 }
 
+// A guide has 2^this values, and one more, for so many intervals (src/render/cdf.rs).
+fn environment_guide_bits(count: u32) -> u32 {
+    return firstLeadingBit(max(count, 4u)) - 2u;
+}
+
+fn environment_guide_length(count: u32) -> u32 {
+    return (1u << environment_guide_bits(count)) + 1u;
+}
+
 // Inverts a cumulative distribution of `count` intervals, whose lower ends are the words from
-// `first` on, in 2^-31: finds the one that holds `number`. An empty one is never found.
-fn environment_invert(first: u32, count: u32, number: u32, low_bits: u32) -> EnvironmentInterval {
-    var index = 0u;
-    var lower = 0u;
-    var upper = 0x80000000u;
-    // As many rounds for every lane; the last bounds met on both sides are the interval's.
-    for (var length = count; length > 1u; length -= length >> 1u) {
+// `first` on, in 2^-31: finds the one that holds `number`. An empty one is never found. The words from
+// `guide` on say between which intervals it is.
+fn environment_invert(first: u32, count: u32, guide: u32, number: u32, low_bits: u32) -> EnvironmentInterval {
+    let entry = guide + (number >> (31u - environment_guide_bits(count)));
+    var index = load_environment_cdf(entry);
+    var last = load_environment_cdf(entry + 1u);
+    while (index < last) {
         if (count_step()) {
             break;
         }
-        let middle = index + (length >> 1u);
-        let bound = load_environment_cdf(first + middle);
-        let above = bound <= number;
+        let middle = (index + last + 1u) / 2u;
+        let above = load_environment_cdf(first + middle) <= number;
         index = select(index, middle, above);
-        lower = select(lower, bound, above);
-        upper = select(min(upper, bound), upper, above);
+        last = select(middle - 1u, last, above);
+    }
+    let lower = load_environment_cdf(first + index);
+    var upper = 0x80000000u;
+    if (index + 1u < count) {
+        upper = load_environment_cdf(first + index + 1u);
     }
     let offset = f32(number - lower) + f32(low_bits) * 1.52587890625e-5;
     return EnvironmentInterval(index, min(offset / f32(upper - lower), ONE_BELOW));

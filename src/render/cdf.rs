@@ -34,9 +34,48 @@ pub fn probabilities(cdf: &[u32]) -> impl Iterator<Item = f64> {
         .map(|(lower, upper)| f64::from(upper - lower) / f64::from(CDF_ONE))
 }
 
+/// Values of the [`guide`] of a distribution of `count` intervals: one for four to eight of them, and one more.
+pub fn guide_length(count: usize) -> usize {
+    (1 << guide_bits(count)) + 1
+}
+
+fn guide_bits(count: usize) -> u32 {
+    count.max(4).ilog2() - 2
+}
+
+/// Which interval of a distribution holds each of the numbers i · 2³¹ / (n - 1), i from 0 to n - 1, the last one less:
+/// where to look for a number between two of them (Chen and Asau 1974, the method of guide tables).
+pub fn guide(cdf: &[u32], guide: &mut [u32]) {
+    let shift = CDF_ONE.ilog2() - guide_bits(cdf.len());
+    for (i, interval) in guide.iter_mut().enumerate() {
+        let number = (i << shift).min(CDF_ONE as usize - 1) as u32;
+        let after = cdf.partition_point(|lower| *lower <= number);
+        *interval = after.saturating_sub(1) as u32;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_guide_leads_to_every_number() {
+        for count in [1, 2, 3, 4, 7, 8, 9, 100] {
+            let weights: Vec<f64> = (0..count).map(|i| f64::from(i * i % 7 + i % 2)).collect();
+            let weights = if count == 1 { vec![1.0] } else { weights };
+            let cdf = cdf_of(&weights);
+            let mut table = vec![0; guide_length(cdf.len())];
+            guide(&cdf, &mut table);
+            let buckets = table.len() - 1;
+            assert!(buckets == 1 || (4..8).contains(&(cdf.len() / buckets)));
+            let ends = cdf.iter().flat_map(|end| [*end, end.saturating_sub(1)]);
+            for number in ends.chain([CDF_ONE - 1]) {
+                let interval = cdf.partition_point(|lower| *lower <= number) as u32 - 1;
+                let bucket = number as usize / (CDF_ONE as usize / buckets);
+                assert!((table[bucket]..=table[bucket + 1]).contains(&interval));
+            }
+        }
+    }
 
     fn cdf_of(weights: &[f64]) -> Vec<u32> {
         let mut cdf = vec![7; weights.len()];

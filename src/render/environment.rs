@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::cdf::{fixed_point_cdf, probabilities};
+use super::cdf::{fixed_point_cdf, guide, guide_length, probabilities};
 use crate::scene::EnvironmentImage;
 
 /// Texels and distribution of an equirectangular environment.
@@ -19,8 +19,8 @@ pub struct EnvironmentTable {
     /// RGB radiance, and the mean density over (u, v) with which points of the cell to the right
     /// and below are drawn, over 2π². The first and the last row are there twice, as the poles' own.
     pub texels: Vec<[f32; 4]>,
-    /// Lower ends of the intervals, in 2⁻³¹: of the rows of cells, then in each row of its columns.
-    /// Empty if no texel sheds light.
+    /// Lower ends of the intervals, in 2⁻³¹: of the rows of cells, then in each row of its columns; after
+    /// all of them the guides, of the rows and then of each row's columns. Empty if no texel sheds light.
     pub cdf: Vec<u32>,
     /// Mean radiance over the sphere.
     pub mean: DVec3,
@@ -70,10 +70,22 @@ fn cdf(image: &EnvironmentImage) -> Vec<u32> {
         .map(|(row, ends)| fixed_point_cdf(&row_weights(image, row), ends))
         .collect();
     if fixed_point_cdf(&sums, marginal) > 0.0 {
-        cdf
+        let guides = guides(marginal, conditional, width);
+        [cdf, guides].concat()
     } else {
         Vec::new()
     }
+}
+
+fn guides(marginal: &[u32], conditional: &[u32], width: usize) -> Vec<u32> {
+    let (rows, columns) = (guide_length(marginal.len()), guide_length(width));
+    let mut guides = vec![0; rows + marginal.len() * columns];
+    let (of_rows, of_columns) = guides.split_at_mut(rows);
+    guide(marginal, of_rows);
+    let each = of_columns.par_chunks_mut(columns);
+    each.zip(conditional.par_chunks(width))
+        .for_each(|(into, ends)| guide(ends, into));
+    guides
 }
 
 fn row_weights(image: &EnvironmentImage, row: usize) -> Vec<f64> {
@@ -165,7 +177,7 @@ mod tests {
         // Both halves alike, but for the rounding of their solid angles.
         let half = table.cdf[1];
         assert!(half.abs_diff(1 << 30) <= 1, "{half}");
-        assert_eq!(table.cdf, [0, half, 0, 0]);
+        assert_eq!(table.cdf[..4], [0, half, 0, 0]);
         let density = (0.5 / (PI * PI)) as f32;
         let cell = [1.0, 2.0, 3.0, density];
         assert_eq!(table.texels, [cell, cell, [1.0, 2.0, 3.0, 0.0]]);
