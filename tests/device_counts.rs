@@ -4,6 +4,7 @@ mod accel_common;
 mod device_common;
 
 use accel_common::{LIST, Random, TREE, build, cube, nasty_ray, soup, sphere};
+use device_common::rays::ray_words;
 use device_common::{ELEMENTS, Setup, device, rounds_as_the_host, upload};
 use etendue::accel::{Bvh, Steps};
 use etendue::geometry::Ray;
@@ -25,13 +26,6 @@ fn on_the_host(bvh: &Bvh, ray: &Ray) -> [u32; 4] {
 }
 
 fn on_the_device(bvh: &Bvh, rays: &[Ray]) -> Vec<[u32; 4]> {
-    let inputs: Vec<[[f32; 4]; 2]> = rays
-        .iter()
-        .map(|r| {
-            let (o, d) = (r.origin.extend(r.t_max), r.direction.extend(0.0));
-            [o.to_array(), d.to_array()]
-        })
-        .collect();
     let elements = upload("elements", &bvh.elements);
     let setup = Setup::new().on(&["COUNT_RAYS"]).structure(bvh);
     let kernel = setup.kernel("counts", "traversal");
@@ -39,7 +33,7 @@ fn on_the_device(bvh: &Bvh, rays: &[Ray]) -> Vec<[u32; 4]> {
     kernel.run(
         count as u32,
         [0; 3],
-        &inputs,
+        &ray_words(rays),
         count,
         &[(ELEMENTS, &elements)],
     )

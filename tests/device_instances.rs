@@ -7,6 +7,7 @@ mod device_common;
 use accel_common::Random;
 use accel_common::instances::{Instanced, place, structures, turn};
 use accel_common::{cube, sphere};
+use device_common::rays::{self, end_at_hit, ray_words};
 use device_common::{ELEMENTS, Kernel, Setup, rounds_as_the_host, upload};
 use etendue::accel::{Hit, Steps};
 use etendue::geometry::Ray;
@@ -21,14 +22,6 @@ const RAYS: usize = 65_536;
 /// another triangle: it has another ray in an instance's space.
 const T_ERROR: f32 = 1e-5;
 
-fn inputs(rays: &[Ray]) -> Vec<[[f32; 4]; 2]> {
-    let input = |r: &Ray| {
-        let (o, d) = (r.origin.extend(r.t_max), r.direction.extend(0.0));
-        [o.to_array(), d.to_array()]
-    };
-    rays.iter().map(input).collect()
-}
-
 /// The device's hits, and whether it found the rays occluded.
 fn trace(
     kernel: &Kernel,
@@ -37,18 +30,7 @@ fn trace(
     params: [u32; 3],
 ) -> Vec<(Option<Hit>, bool)> {
     let elements = upload("elements", &target.bvh.elements);
-    let (n, buffers) = (rays.len(), [(ELEMENTS, &elements)]);
-    let results: Vec<[[u32; 4]; 2]> = kernel.run(n as u32, params, &inputs(rays), n, &buffers);
-    let hit = |[a, b]: &[[u32; 4]; 2]| Hit {
-        t: f32::from_bits(a[0]),
-        triangle: a[1],
-        b: [b[0], b[1], b[2]].map(f32::from_bits),
-        back_face: a[2] == 1,
-    };
-    results
-        .iter()
-        .map(|r| ((r[0][1] != u32::MAX).then(|| hit(r)), r[0][3] == 1))
-        .collect()
+    rays::trace(kernel, &elements, rays, params)
 }
 
 /// Rays that are hard to decide, some of them ending just at, before or behind their hit.
@@ -56,11 +38,7 @@ fn rays(target: &Instanced, seed: u64) -> Vec<Ray> {
     let mut random = Random(seed);
     let ray = |i: usize| {
         let mut ray = target.ray(&mut random);
-        if i % 4 == 3
-            && let Some(hit) = target.bvh.intersect(&ray)
-        {
-            ray.t_max = [hit.t, hit.t.next_down(), hit.t.next_up()][i / 4 % 3];
-        }
+        end_at_hit(&mut ray, i, |ray| target.bvh.intersect(ray));
         ray
     };
     (0..RAYS).map(ray).collect()
@@ -197,7 +175,7 @@ fn the_device_counts_what_the_host_looks_at() {
     let found: Vec<[u32; 4]> = kernel.run(
         rays.len() as u32,
         [0; 3],
-        &inputs(rays),
+        &ray_words(rays),
         rays.len(),
         &buffers,
     );

@@ -2,7 +2,8 @@
 // lanes read the same pair at the same time, which costs a fraction of reading one each.
 // Twin of src/accel/list.rs, operation for operation.
 //
-// The generated list.wgsl has fn closest_of_all(setup, ray, camera_ray, seed) -> ListHit.
+// The generated list.wgsl has fn closest_of_all(setup, ray, camera_ray, seed) -> ListHit and
+// fn any_of_all(setup, ray, seed) -> bool.
 
 #include "accel/trace.wgsl"
 #include "list.wgsl"
@@ -29,22 +30,16 @@ fn trace_answer(t: Traversal) -> Answer {
 // Answers the query. Hits are put in order by a t from edges that are found quickly; the closest is
 // then found again, to nearly full precision.
 fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
-  for (var i = 0u; i < 2u; i += 1u) {
-    let is_shadow = i == 0u;
-    var ray = (*t).query.ray;
-    if (is_shadow) {
-      ray = (*t).query.shadow;
-    }
-    if (select((*t).query.has_ray, (*t).query.has_shadow, is_shadow)) {
-      let setup = ray_setup(ray.origin, ray.direction);
-      let camera_ray = (*t).query.camera_ray && !is_shadow;
-      let seed = select((*t).query.seed, (*t).query.shadow_seed, is_shadow);
-      let best = closest_of_all(setup, ray, camera_ray, seed);
-      if (is_shadow) {
-        (*t).answer.occluded = best.triangle != MISS;
-      } else if (best.triangle != MISS) {
-        (*t).answer.hit = refine(best.triangle, setup);
-      }
+  let query = (*t).query;
+  if (query.has_shadow) {
+    let setup = ray_setup(query.shadow.origin, query.shadow.direction);
+    (*t).answer.occluded = any_of_all(setup, query.shadow, query.shadow_seed);
+  }
+  if (query.has_ray) {
+    let setup = ray_setup(query.ray.origin, query.ray.direction);
+    let best = closest_of_all(setup, query.ray, query.camera_ray, query.seed);
+    if (best.triangle != MISS) {
+      (*t).answer.hit = refine(best.triangle, setup);
     }
   }
   return true;
@@ -95,4 +90,28 @@ fn closer(
     is_closer &= !is_culled(flags, hit.back_face, camera_ray);
   }
   return ListHit(select(so_far.t, hit.t, is_closer), select(so_far.triangle, id, is_closer));
+}
+
+// Whether one of the triangles (a, b, c), which is number `id`, and (a, c, d) is in a ray's way.
+fn any_of_pair(
+  id: u32, first_flags: u32, second_flags: u32, ray: Ray, seed: u32, a: vec3f, b: vec3f, c: vec3f, d: vec3f,
+) -> bool {
+  let fan = sheared_fan(a, b, c, d);
+  let first = fan.first & blocks(ray, id, first_flags, seed, fan.first_edges, Sheared(a, b, c));
+  let second = fan.second & blocks(ray, id + 1u, second_flags, seed, fan.second_edges, Sheared(a, c, d));
+  return first | second;
+}
+
+// Whether 0 < t <= t_max. Nothing needs t itself, so the determinant stays where it is.
+fn blocks(ray: Ray, id: u32, flags: u32, seed: u32, edges: vec3f, s: Sheared) -> bool {
+  let determinant = (edges.x + edges.y) + edges.z;
+  let sign = bitcast<u32>(determinant) & 0x80000000u;
+  let depth = bitcast<f32>(bitcast<u32>(exact_depth(edges, s.a, s.b, s.c)) ^ sign);
+  var is_hit = (depth > 0.0) & (depth <= ray.t_max * abs(determinant)) & (id != ray.start) & (id != ray.end);
+  if ((flags & TRIANGLE_ALPHA) != 0u) {
+    if (is_hit) {
+      is_hit = accept_hit(load_triangle(id), edges / determinant, determinant < 0.0, false, seed);
+    }
+  }
+  return is_hit;
 }

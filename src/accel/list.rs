@@ -35,6 +35,16 @@ pub(super) fn trace(elements: &[Element], ray: &Ray, steps: &mut Steps) -> Optio
     (triangle != MISS).then(|| refine(elements, triangle, &setup))
 }
 
+/// Whether anything is met at 0 < t ≤ `t_max`, found without t.
+pub(super) fn occluded(elements: &[Element], ray: &Ray, steps: &mut Steps) -> bool {
+    let setup = RaySetup::new(ray.origin, ray.direction);
+    steps.pairs += elements.len() as u64;
+    elements.iter().any(|element| {
+        let fan = fan_candidates(&setup, element.vertices());
+        (0..2).any(|slot| fan.candidates[slot] && fan.is_met_within(slot, ray.t_max))
+    })
+}
+
 /// The hit on a triangle. Beside an edge the quick test may have left open what the exact one denies:
 /// there the quick values are the hit, lest none of the triangles at the edge be met.
 fn refine(elements: &[Element], triangle: u32, setup: &RaySetup) -> Hit {

@@ -132,9 +132,14 @@ impl Bvh {
         self.trace(ray, false, &mut Steps::default())
     }
 
-    /// Whether anything is hit at 0 < t ≤ `t_max`: `intersect(..).is_some()`, but faster.
+    /// Whether anything is hit at 0 < t ≤ `t_max`: `intersect(..).is_some()`, but faster; in a list a hit whose t is
+    /// `t_max` but for rounding may be on either side.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.trace(ray, true, &mut Steps::default()).is_some()
+        let steps = &mut Steps::default();
+        if self.is_list() {
+            return list::occluded(&self.elements, ray, steps);
+        }
+        self.trace(ray, true, steps).is_some()
     }
 
     /// [`Bvh::intersect`], or with `any_hit` the first hit found, which counts its steps.

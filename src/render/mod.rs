@@ -15,6 +15,7 @@ mod flatten;
 mod focus;
 mod frame;
 mod gpu_scene;
+mod hull;
 pub mod layout;
 mod light_selection;
 mod light_tree;

@@ -8,6 +8,7 @@
 
 pub mod grid;
 pub mod lights;
+pub mod rays;
 pub mod scenes;
 pub mod statistics;
 

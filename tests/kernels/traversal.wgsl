@@ -43,3 +43,15 @@ fn together(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_
         write_answer(id.x, answer.hit, answer.occluded);
     }
 }
+
+// Whether anything is in the way from triangle to triangle: a ray as above, then the triangles.
+@compute @workgroup_size(64)
+fn between(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
+    stack_lane = lane;
+    if (id.x < params.x) {
+        let at = inputs[3u * id.x];
+        let ends = bitcast<vec4u>(inputs[3u * id.x + 2u]);
+        let ray = Ray(at.xyz, at.w, inputs[3u * id.x + 1u].xyz, ends.x, ends.y);
+        write_answer(id.x, miss(ray), occluded(ray, 0u));
+    }
+}
