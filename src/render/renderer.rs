@@ -9,6 +9,7 @@ use super::film::Film;
 use super::frame::base_frame;
 use super::gpu_scene::GpuScene;
 use super::layout::{Dispatch, ElementCounts, FilmPixel, Status};
+use super::pace::{Pace, Progress, TILE_LANES};
 use super::prepared::Prepared;
 use super::program;
 use super::settings::Settings;
@@ -18,34 +19,8 @@ use crate::host::stages::stage;
 use crate::scene::Scene;
 use crate::shader::{self, Diagnostic, OverrideInfo, ShaderLibrary};
 
-/// Samples a pixel in a pass that takes longer than [`PASS`], at most: the pixels of a picture that is
-/// stopped in between differ by so many samples.
-const MAX_GROWN_PASS: u64 = 32;
-
-/// Wall time that one submission should take: short enough for any watchdog and for Ctrl-C.
-const PIECE: Duration = Duration::from_millis(100);
-/// Wall time after which all pixels should have got their next samples.
-const PASS: Duration = Duration::from_millis(500);
 /// Loop iterations that are kept back from a driver's limit, for those that no shader counts.
 const STEP_RESERVE: u32 = 256;
-/// Lanes of a tile and of a workgroup.
-const TILE_LANES: u32 = 64;
-
-/// How far a render is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Progress {
-    /// Samples drawn, over all pixels.
-    pub samples_done: u64,
-    /// Samples to draw.
-    pub samples_total: u64,
-    /// Samples a pixel, on average.
-    pub spp_done: f64,
-    /// Wall time in the render loop.
-    pub elapsed: Duration,
-    /// Samples (paths) per second so far.
-    pub paths_per_second: f64,
-}
-
 /// A render in flight: a pipeline, a film, and how far it is.
 pub struct Renderer<'a> {
     device: &'a Device,
@@ -61,12 +36,8 @@ pub struct Renderer<'a> {
     warnings: Vec<Diagnostic>,
     /// Iterations at which the driver leaves loops, if it does.
     loop_limit: Option<u32>,
-    spp_done: u64,
-    samples_done: u64,
-    elapsed: Duration,
+    pace: Pace,
     compile_time: Duration,
-    /// Samples per second of the last pieces, smoothed.
-    rate: f64,
 }
 
 struct BoundBand {
@@ -131,11 +102,8 @@ impl<'a> Renderer<'a> {
             overrides: compiled.overrides,
             warnings: compiled.warnings,
             loop_limit,
-            spp_done: 0,
-            samples_done: 0,
-            elapsed: Duration::ZERO,
+            pace: Pace::new(settings, device.info()),
             compile_time: Duration::ZERO,
-            rate: 0.0,
         };
         let used: Vec<u32> = kinds.iter().map(|k| k.0).collect();
         stage("film", || {
@@ -197,14 +165,14 @@ impl<'a> Renderer<'a> {
         &mut self,
         on_progress: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<()>, RenderError> {
-        while self.spp_done < self.settings.spp {
-            let target = self.spp_done + self.pass_samples();
+        while self.pace.spp_done < self.settings.spp {
+            let target = self.pace.spp_done + self.pace.pass_samples();
             for band in 0..self.bands.len() {
                 if self.render_band(band, target, on_progress)?.is_break() {
                     return Ok(ControlFlow::Break(()));
                 }
             }
-            self.spp_done = target;
+            self.pace.spp_done = target;
         }
         Ok(ControlFlow::Continue(()))
     }
@@ -215,15 +183,16 @@ impl<'a> Renderer<'a> {
         target: u64,
         on_progress: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<()>, RenderError> {
-        let samples = target - self.spp_done;
+        let samples = target - self.pace.spp_done;
         let band_items = self.bands[band].band.tile_count() * TILE_LANES;
         let mut item = 0;
         while item < band_items {
-            let count = self.piece_items(samples).min(band_items - item);
+            let count = self.pace.piece_items(samples).min(band_items - item);
             let start = Instant::now();
             self.run_piece(band, item, count, target)?;
             item += count;
-            self.account(band, item - count, count, samples, start.elapsed());
+            let pixels = self.bands[band].band.pixels_in(item - count, count);
+            self.pace.account(pixels * samples, start.elapsed());
             if on_progress(self, &self.progress()).is_break() {
                 return Ok(ControlFlow::Break(()));
             }
@@ -307,58 +276,9 @@ impl<'a> Renderer<'a> {
             .upload(&self.dispatch, 0, bytemuck::bytes_of(dispatch))?)
     }
 
-    /// Samples a pixel in the next pass over the picture.
-    fn pass_samples(&self) -> u64 {
-        let pixels = f64::from(self.settings.width) * f64::from(self.settings.height);
-        // A small picture is a single piece.
-        let pieces = (pixels / f64::from(16 * TILE_LANES)).clamp(1.0, PASS.div_duration_f64(PIECE));
-        let fitting = (self.rate * PIECE.as_secs_f64() * pieces / pixels) as u64;
-        // Lanes that go from sample to sample keep each other busy, so passes grow with what is done.
-        let growing = fitting.max(self.spp_done.min(MAX_GROWN_PASS));
-        let fitting = self.settings.pass_samples.unwrap_or(growing);
-        fitting.clamp(1, self.settings.spp - self.spp_done)
-    }
-
-    /// Work items in the next piece, each of `samples` samples.
-    fn piece_items(&self, samples: u64) -> u32 {
-        let fitting = self.rate * PIECE.as_secs_f64() / samples as f64;
-        let most = u64::from(self.device.info().max_workgroups[0])
-            / u64::from(self.device.info().subgroup_size.max(2))
-            * u64::from(TILE_LANES);
-        let tiles = match self.settings.piece_tiles {
-            Some(tiles) => u64::from(tiles.max(1)),
-            // A first guess, until the first piece has been timed.
-            None if self.rate == 0.0 => 16,
-            None => (fitting as u64 / u64::from(TILE_LANES)).max(2),
-        };
-        (tiles * u64::from(TILE_LANES))
-            .min(most.max(u64::from(TILE_LANES)))
-            .min(u64::from(u32::MAX / TILE_LANES * TILE_LANES)) as u32
-    }
-
-    fn account(&mut self, band: usize, first: u32, count: u32, samples: u64, time: Duration) {
-        let pixels = self.bands[band].band.pixels_in(first, count);
-        let drawn = pixels * samples;
-        self.samples_done += drawn;
-        self.elapsed += time;
-        let rate = drawn as f64 / time.as_secs_f64().max(1e-9);
-        self.rate = if self.rate == 0.0 {
-            rate
-        } else {
-            0.5 * (self.rate + rate)
-        };
-    }
-
     /// How far it is.
     pub fn progress(&self) -> Progress {
-        let pixels = u64::from(self.settings.width) * u64::from(self.settings.height);
-        Progress {
-            samples_done: self.samples_done,
-            samples_total: pixels * self.settings.spp,
-            spp_done: self.samples_done as f64 / pixels as f64,
-            elapsed: self.elapsed,
-            paths_per_second: self.samples_done as f64 / self.elapsed.as_secs_f64().max(1e-9),
-        }
+        self.pace.progress()
     }
 
     /// The film as it is.

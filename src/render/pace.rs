@@ -1,0 +1,117 @@
+//! How much to do next: pieces of about 100 ms, passes that grow.
+
+use std::time::Duration;
+
+use super::settings::Settings;
+use crate::gpu::DeviceInfo;
+
+/// Lanes of a tile and of a workgroup.
+pub const TILE_LANES: u32 = 64;
+
+/// Samples a pixel in a pass that takes longer than [`PASS`], at most: the pixels of a picture that is
+/// stopped in between differ by so many samples.
+const MAX_GROWN_PASS: u64 = 32;
+
+/// Wall time that one submission should take: short enough for any watchdog and for Ctrl-C.
+const PIECE: Duration = Duration::from_millis(100);
+/// Wall time after which all pixels should have got their next samples.
+const PASS: Duration = Duration::from_millis(500);
+
+/// How far a render is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Samples drawn, over all pixels.
+    pub samples_done: u64,
+    /// Samples to draw.
+    pub samples_total: u64,
+    /// Samples a pixel, on average.
+    pub spp_done: f64,
+    /// Wall time in the render loop.
+    pub elapsed: Duration,
+    /// Samples (paths) per second so far.
+    pub paths_per_second: f64,
+}
+
+/// How far a render is, how fast, and what it should do next.
+pub struct Pace {
+    pixels: u64,
+    spp: u64,
+    /// What the user fixed.
+    pass_samples: Option<u64>,
+    piece_tiles: Option<u32>,
+    /// Most work items of a dispatch in which one lane of each SIMD group works.
+    most_items: u64,
+    /// Samples that all pixels have.
+    pub spp_done: u64,
+    samples_done: u64,
+    elapsed: Duration,
+    /// Samples per second of the last pieces, smoothed.
+    rate: f64,
+}
+
+impl Pace {
+    /// At the beginning of a render.
+    pub fn new(settings: &Settings, device: &DeviceInfo) -> Self {
+        let groups = device.max_workgroups[0] / device.subgroup_size.max(2);
+        Self {
+            pixels: u64::from(settings.width) * u64::from(settings.height),
+            spp: settings.spp,
+            pass_samples: settings.pass_samples,
+            piece_tiles: settings.piece_tiles,
+            most_items: u64::from(groups.max(1)) * u64::from(TILE_LANES),
+            spp_done: 0,
+            samples_done: 0,
+            elapsed: Duration::ZERO,
+            rate: 0.0,
+        }
+    }
+
+    /// Samples a pixel in the next pass over the picture.
+    pub fn pass_samples(&self) -> u64 {
+        let pixels = self.pixels as f64;
+        // A small picture is a single piece.
+        let pieces = (pixels / f64::from(16 * TILE_LANES)).clamp(1.0, PASS.div_duration_f64(PIECE));
+        let fitting = (self.rate * PIECE.as_secs_f64() * pieces / pixels) as u64;
+        // Lanes that go from sample to sample keep each other busy, so passes grow with what is done: 1, 3, 12, 32.
+        let growing = fitting.max((3 * self.spp_done).min(MAX_GROWN_PASS));
+        let fitting = self.pass_samples.unwrap_or(growing);
+        fitting.clamp(1, self.spp - self.spp_done)
+    }
+
+    /// Work items in the next piece, each of `samples` samples.
+    pub fn piece_items(&self, samples: u64) -> u32 {
+        let fitting = self.rate * PIECE.as_secs_f64() / samples as f64;
+        let tiles = match self.piece_tiles {
+            Some(tiles) => u64::from(tiles.max(1)),
+            // A first guess, until the first piece has been timed.
+            None if self.rate == 0.0 => 16,
+            None => (fitting as u64 / u64::from(TILE_LANES)).max(2),
+        };
+        (tiles * u64::from(TILE_LANES))
+            .min(self.most_items)
+            .min(u64::from(u32::MAX / TILE_LANES * TILE_LANES)) as u32
+    }
+
+    /// Notes that so many samples, over all pixels, were drawn in this wall time.
+    pub fn account(&mut self, drawn: u64, time: Duration) {
+        self.samples_done += drawn;
+        self.elapsed += time;
+        let rate = drawn as f64 / time.as_secs_f64().max(1e-9);
+        self.rate = if self.rate == 0.0 {
+            rate
+        } else {
+            0.5 * (self.rate + rate)
+        };
+    }
+
+    /// How far it is.
+    pub fn progress(&self) -> Progress {
+        Progress {
+            samples_done: self.samples_done,
+            samples_total: self.pixels * self.spp,
+            spp_done: self.samples_done as f64 / self.pixels as f64,
+            elapsed: self.elapsed,
+            paths_per_second: self.samples_done as f64 / self.elapsed.as_secs_f64().max(1e-9),
+        }
+    }
+}
