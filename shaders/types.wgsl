@@ -1,4 +1,4 @@
-// Structs shared with the host. Each is mirrored by a `repr(C)` struct in src/render/layout.rs;
+// Structs shared with the host. Each is mirrored by a `repr(C)` struct in src/render/layout/;
 // names, offsets, sizes and strides are compared on every compile.
 
 // What stays the same for a whole render.

@@ -134,7 +134,7 @@ fn describe(
         let place = place.unwrap_or_else(|| name_place(report.text(), &declaration, layout.name));
         diagnostic = diagnostic.label(report.place(place), mismatch.text.as_str());
     }
-    diagnostic.note("the host's structs are in src/render/layout.rs")
+    diagnostic.note("the host's structs are in src/render/layout/")
 }
 
 /// The bytes from the struct's name to its closing brace.
