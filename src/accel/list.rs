@@ -36,9 +36,8 @@ pub(super) fn trace(elements: &[Element], ray: &Ray, steps: &mut Steps) -> Optio
 }
 
 /// Whether anything is met at 0 < t ≤ `t_max`, found without t.
-pub(super) fn occluded(elements: &[Element], ray: &Ray, steps: &mut Steps) -> bool {
+pub(super) fn occluded(elements: &[Element], ray: &Ray) -> bool {
     let setup = RaySetup::new(ray.origin, ray.direction);
-    steps.pairs += elements.len() as u64;
     elements.iter().any(|element| {
         let fan = fan_candidates(&setup, element.vertices());
         (0..2).any(|slot| fan.candidates[slot] && fan.is_met_within(slot, ray.t_max))

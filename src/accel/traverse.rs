@@ -135,11 +135,10 @@ impl Bvh {
     /// Whether anything is hit at 0 < t ≤ `t_max`: `intersect(..).is_some()`, but faster; in a list a hit whose t is
     /// `t_max` but for rounding may be on either side.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        let steps = &mut Steps::default();
         if self.is_list() {
-            return list::occluded(&self.elements, ray, steps);
+            return list::occluded(&self.elements, ray);
         }
-        self.trace(ray, true, steps).is_some()
+        self.trace(ray, true, &mut Steps::default()).is_some()
     }
 
     /// [`Bvh::intersect`], or with `any_hit` the first hit found, which counts its steps.

@@ -126,24 +126,28 @@ impl FanCandidates {
     /// The hit by the quick values: as [`refined_hit`] has it, but less precise, and met wherever
     /// the quick edges leave it open. `t` may be 0, negative or not a number: then there is none.
     pub fn quick_hit(&self, slot: usize) -> TriangleHit {
-        let [a, b, c] = self.triangle(slot);
-        let edges = self.edges[slot];
-        let determinant = (edges.x + edges.y) + edges.z;
+        let (depth, determinant) = self.quick_fraction(slot);
         TriangleHit {
-            t: exact_depth(edges, a, b, c) / determinant,
-            b: (edges / determinant).to_array(),
+            t: depth / determinant,
+            b: (self.edges[slot] / determinant).to_array(),
             back_face: determinant < 0.0,
         }
     }
 
     /// Whether 0 < t ≤ `t_max` by the quick values, without the division that t takes.
     pub fn is_met_within(&self, slot: usize, t_max: f32) -> bool {
+        let (depth, determinant) = self.quick_fraction(slot);
+        let sign = determinant.to_bits() & (1 << 31);
+        let depth = f32::from_bits(depth.to_bits() ^ sign);
+        depth > 0.0 && depth <= t_max * determinant.abs()
+    }
+
+    /// What quick t is the quotient of: depth and determinant.
+    fn quick_fraction(&self, slot: usize) -> (f32, f32) {
         let [a, b, c] = self.triangle(slot);
         let edges = self.edges[slot];
         let determinant = (edges.x + edges.y) + edges.z;
-        let sign = determinant.to_bits() & (1 << 31);
-        let depth = f32::from_bits(exact_depth(edges, a, b, c).to_bits() ^ sign);
-        depth > 0.0 && depth <= t_max * determinant.abs()
+        (exact_depth(edges, a, b, c), determinant)
     }
 }
 

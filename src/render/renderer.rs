@@ -21,6 +21,7 @@ use crate::shader::{self, Diagnostic, OverrideInfo, ShaderLibrary};
 
 /// Loop iterations that are kept back from a driver's limit, for those that no shader counts.
 const STEP_RESERVE: u32 = 256;
+
 /// A render in flight: a pipeline, a film, and how far it is.
 pub struct Renderer<'a> {
     device: &'a Device,
