@@ -45,13 +45,13 @@ fn sample_light(s: Surface, both_sides: bool, sampler: ptr<function, Sampler>) -
         }
         var light = lights[choice.light];
         light.probability = choice.probability;
-        return sample_chosen_light(s, light, sampler);
+        return sample_chosen_light(s, both_sides, light, sampler);
     }
-    return sample_chosen_light(s, lights[choose_light(sampler)], sampler);
+    return sample_chosen_light(s, both_sides, lights[choose_light(sampler)], sampler);
 }
 
 // A sample of a light that was chosen with its probability.
-fn sample_chosen_light(s: Surface, light: Light, sampler: ptr<function, Sampler>) -> LightSample {
+fn sample_chosen_light(s: Surface, both_sides: bool, light: Light, sampler: ptr<function, Sampler>) -> LightSample {
     let kind = light.kind_and_index >> LIGHT_KIND_SHIFT;
     let item = light.kind_and_index & LIGHT_INDEX_MASK;
     let u = next_2d_bits(sampler);
@@ -61,7 +61,7 @@ fn sample_chosen_light(s: Surface, light: Light, sampler: ptr<function, Sampler>
     } else if (HAS_PUNCTUAL_LIGHTS && kind == LIGHT_PUNCTUAL) {
         sample = punctual_sample(s, item);
     } else if (HAS_ENVIRONMENT && kind == LIGHT_ENVIRONMENT) {
-        sample = environment_sample(s, u);
+        sample = environment_sample(s, both_sides, u);
     }
     sample.pdf *= light.probability;
     sample.weight /= light.probability;

@@ -8,6 +8,10 @@
 override ROULETTE_DEPTH: u32 = 5u;
 override ROULETTE_MAX_SURVIVAL: f32 = 0.95;
 
+// How many samples one of an environment's picture counts for against one of the BSDF: it is the better spread, of what
+// both find well (docs/kernel.md).
+override ENVIRONMENT_SAMPLES: f32 = 2.0;
+
 // Pairs of random numbers that a vertex may use, so that one that uses fewer shifts no other's.
 const DIMENSIONS_PER_VERTEX: u32 = 6u;
 
@@ -90,7 +94,7 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
     }
     if (hit.triangle == NONE) {
         if (HAS_ENVIRONMENT) {
-            let light = environment_light((*path).last.normal, ray.direction);
+            let light = environment_light((*path).last.normal, (*path).last.both_sides, ray.direction);
             (*path).L += beta * environment_hit_weight(light.pdf, (*path).last) * light.radiance;
         }
         return;
@@ -185,7 +189,8 @@ fn sample_direct(
     }
     var contribution = bsdf_eval(bsdf, wo, wi) * light.weight * transmittance_to(s, (*path).media, crossing, light, wi);
     if (!light.delta && BSDF_SAMPLES) {
-        contribution *= power_heuristic(light.pdf, bsdf_pdf(bsdf, wo, wi));
+        let samples = select(1.0, ENVIRONMENT_SAMPLES, HAS_ENVIRONMENT_IMAGE && light.at_infinity);
+        contribution *= power_heuristic(samples * light.pdf, bsdf_pdf(bsdf, wo, wi));
     }
     (*path).light = beta * contribution;
     (*path).light_seed = seed;
@@ -215,5 +220,6 @@ fn environment_hit_weight(pdf: f32, last: LastBounce) -> f32 {
         return 0.0;
     }
     let choice = lights[frame.environment_light].probability;
-    return power_heuristic(last.pdf, choice * pdf);
+    let samples = select(1.0, ENVIRONMENT_SAMPLES, HAS_ENVIRONMENT_IMAGE);
+    return power_heuristic(last.pdf, samples * choice * pdf);
 }

@@ -17,8 +17,11 @@ fn axes(grid_pole: DVec3, x: DVec3) -> DMat3 {
 }
 
 const ENVIRONMENT: &str = "light/environment.wgsl";
+const CHOICE: &str = "light/environment_choice.wgsl";
 /// By how much the variance at 64 Sobol samples is at least below that of independent ones.
 const SOBOL_GAIN: f64 = 10.0;
+/// By how much the variance of independent samples is at least below that of samples that know no normal.
+const NORMAL_GAIN: f64 = 10.0;
 const COLUMNS: usize = 32;
 const ROWS: usize = 16;
 
@@ -80,7 +83,18 @@ fn check_environment_consistency(bench: &Bench, drawn: &[Drawn]) {
 
 #[test]
 fn environment_samples_follow_their_density() {
-    let bench = Bench::new(&hot_environment(), Vec3::ZERO, Vec3::Y);
+    let normals = [Vec3::Y, Vec3::NEG_Y, Vec3::new(-0.6, 0.1, -0.7)];
+    for normal in normals {
+        let bench = Bench::new(&hot_environment(), Vec3::ZERO, normal);
+        check_environment(&bench, |d| d.dot(normal.normalize().as_dvec3()).max(0.0));
+    }
+    let bench = Bench::new(&hot_environment(), Vec3::ZERO, Vec3::Y).both_sides();
+    check_environment(&bench, |_| 1.0);
+}
+
+/// Samples follow their density, which integrates to 1, and the mean of their weights, each times what its direction
+/// counts, is the integral of the radiance.
+fn check_environment(bench: &Bench, counts_for: impl Fn(DVec3) -> f64) {
     let grid = texel_grid(0.9);
     let (directions, weights) = grid.points();
     let values = bench.evaluate("evaluate_environment", &directions);
@@ -91,12 +105,13 @@ fn environment_samples_follow_their_density() {
     let wi: Vec<[f32; 3]> = drawn.iter().map(|d| xyz(&d[0])).collect();
     let (counts, lost) = grid.histogram(&wi);
     assert_fits("environment picture", &counts, &expected, lost);
-    check_environment_consistency(&bench, &drawn);
-    // The mean weight is the integral of the radiance.
+    check_environment_consistency(bench, &drawn);
+    let count = |d: &[f32; 4]| counts_for(DVec3::from(xyz(d).map(f64::from)));
     for c in 0..3 {
-        let radiance = values.iter().map(|v| f64::from(v[c]));
+        let radiance = values.iter().zip(&directions);
+        let radiance = radiance.map(|(v, d)| f64::from(v[c]) * count(d));
         let expected: f64 = SphereGrid::integrate(&weights, radiance).iter().sum();
-        let (mean, error) = mean_and_error(drawn.iter().map(|d| f64::from(d[1][c])));
+        let (mean, error) = mean_and_error(drawn.iter().map(|d| f64::from(d[1][c]) * count(&d[0])));
         assert!(
             (mean - expected).abs() < 5.0 * error + 1e-3 * expected,
             "{mean} {error} {expected}"
@@ -128,30 +143,40 @@ fn constant_environment_samples_follow_their_density() {
 /// evenly within their cells, and a turn the wrong way.
 #[test]
 fn wrong_environments_are_rejected() {
-    for (name, from, to) in [
+    for (name, file, from, to) in [
         (
             "a pdf without the sine",
+            ENVIRONMENT,
             "density / sin_theta",
             "0.5 * PI * density",
         ),
         (
             "columns alike",
-            "let above = load_environment_cdf(first + middle) <= number;",
-            "let above = (number & (1u << (last & 31u))) != 0u;",
+            CHOICE,
+            "let above = load_environment_cdf(first + middle) <= half;",
+            "let above = (half & (1u << (last & 31u))) != 0u;",
+        ),
+        (
+            "the table of another normal",
+            CHOICE,
+            "let table = environment_table(grid, normal);",
+            "let table = environment_table(grid, normal.zxy);",
         ),
         (
             "points evenly in their cells",
+            ENVIRONMENT,
             "let x = sample_linear(point.inside.x, across.x, across.y);",
             "let x = point.inside.x;",
         ),
         (
             "the wrong turn",
+            ENVIRONMENT,
             "return vec3f(c * d.x + s * d.z, d.y, -s * d.x + c * d.z);",
             "return vec3f(c * d.x - s * d.z, d.y, s * d.x + c * d.z);",
         ),
     ] {
         let mut bench = Bench::new(&hot_environment(), Vec3::ZERO, Vec3::Y);
-        bench.setup = bench.setup.patched(ENVIRONMENT, from, to);
+        bench.setup = bench.setup.patched(file, from, to);
         let grid = texel_grid(0.9);
         let (directions, weights) = grid.points();
         let values = bench.evaluate("evaluate_environment", &directions);
@@ -180,46 +205,112 @@ fn sunny(sun: f32) -> Scene {
     })
 }
 
-/// Lower end and length of the interval of a distribution that holds a number.
-fn interval(cdf: &[u32], number: u32) -> (usize, u32, u32) {
-    let index = cdf.partition_point(|end| *end <= number) - 1;
-    let upper = cdf.get(index + 1).copied().unwrap_or(1 << 31);
-    (index, cdf[index], upper - cdf[index])
+/// All of the light that reaches a surface can be drawn, and what is drawn is seldom below its horizon.
+#[test]
+fn no_light_above_the_horizon_is_left_out() {
+    let (directions, _) = texel_grid(0.9).points();
+    let mut random = Random(23);
+    for _ in 0..40 {
+        let mut coordinate = || random.unit() as f32 - 0.5;
+        let normal = Vec3::new(coordinate(), coordinate(), coordinate()).normalize();
+        let bench = Bench::new(&hot_environment(), Vec3::ZERO, normal);
+        let values = bench.evaluate("evaluate_environment", &directions);
+        for (direction, value) in directions.iter().zip(values) {
+            let cosine = Vec3::from(xyz(direction)).dot(normal);
+            let is_lit = value[..3] != [0.0; 3];
+            assert!(
+                value[3] > 0.0 || cosine <= 0.0 || !is_lit,
+                "{direction:?} {normal}"
+            );
+        }
+        let bench = Bench::new(&picture(64, 32, |_, _| 1.0), Vec3::ZERO, normal);
+        let drawn = bench.draw("sample_environment", 4);
+        let below = |d: &&Drawn| Vec3::from(xyz(&d[0])).dot(normal) < 0.0;
+        let share = drawn.iter().filter(below).count() as f64 / drawn.len() as f64;
+        assert!(share < 0.05, "{share} below {normal}");
+    }
 }
 
-/// The cell and the uniform place in it that a pair of numbers must choose, in 2⁻³¹ (column, then row).
-fn chosen(cdf: &[u32], [width, rows]: [usize; 2], [x, y]: [u32; 2]) -> [f64; 4] {
-    let inside = |first: u32, length: u32, bits: u32, other: u32| {
-        let low = f64::from(other & 0xffff) / 65536.0;
-        (f64::from((bits >> 1) - first) + low) / f64::from(length)
-    };
-    let (row, first_row, height) = interval(&cdf[..rows], y >> 1);
-    let columns = &cdf[rows + row * width..][..width];
-    let (column, first, length) = interval(columns, x >> 1);
-    [
-        column as f64,
-        row as f64,
-        inside(first, length, x, y),
-        inside(first_row, height, y, x),
-    ]
+const ALL: f64 = (1u32 << 31) as f64;
+
+/// The distributions by which the device chooses, for light from both sides.
+struct Words<'a> {
+    words: &'a [u32],
+    cells: [usize; 2],
+    blocks: [usize; 2],
 }
 
-/// Ends of rows and of their columns, the numbers next to them, the least and the greatest.
-fn hard_numbers(cdf: &[u32], [width, rows]: [usize; 2]) -> Vec<[u32; 2]> {
-    let about = |end: &u32| [end << 1, (end << 1).wrapping_sub(1), (end << 1) | 1];
-    let mut random = Random(21);
-    let mut pairs = vec![[0, 0], [u32::MAX, u32::MAX], [0, u32::MAX], [u32::MAX, 0]];
-    for (row, end) in cdf[..rows].iter().enumerate() {
-        let columns = &cdf[rows + row * width..][..width];
-        for y in about(end) {
-            pairs.extend(columns.iter().step_by(7).flat_map(about).map(|x| [x, y]));
-            pairs.push([random.bits() as u32, y]);
+impl<'a> Words<'a> {
+    fn new(words: &'a [u32], cells: [usize; 2]) -> Self {
+        let blocks = [cells[0].min(32), cells[1].min(16)];
+        Self {
+            words,
+            cells,
+            blocks,
         }
     }
+
+    /// The last of the tables of 16 by 16 normals and one.
+    fn table(&self) -> &[u32] {
+        let [columns, rows] = self.blocks;
+        &self.words[self.words.len() - rows - 2 * columns * rows..]
+    }
+
+    /// Block of a cell along an axis, and the block's cells.
+    fn block_of(&self, axis: usize, cell: usize) -> (usize, std::ops::Range<usize>) {
+        let (blocks, cells) = (self.blocks[axis], self.cells[axis]);
+        let range = |b: usize| b * cells / blocks..(b + 1) * cells / blocks;
+        let found = (0..blocks).find(|b| range(*b).contains(&cell));
+        let block = found.unwrap_or(blocks);
+        (block, range(block))
+    }
+
+    /// The numbers, from 0 to 1, by which a place in a cell (column and row) is chosen.
+    fn numbers(&self, cell: [usize; 2], inside: [f64; 2]) -> [f64; 2] {
+        let (column, columns) = self.block_of(0, cell[0]);
+        let (row, rows) = self.block_of(1, cell[1]);
+        let [width, height] = self.cells;
+        let row_ends = &self.words[width * height + column * height..][rows.clone()];
+        let cell_ends = &self.words[cell[1] * width..][columns.clone()];
+        let block_ends = &self.table()[self.blocks[1] + row * self.blocks[0]..][..self.blocks[0]];
+        let in_block = [
+            place(cell_ends, cell[0] - columns.start, inside[0]),
+            place(row_ends, cell[1] - rows.start, inside[1]),
+        ];
+        let row_place = place(&self.table()[..self.blocks[1]], row, in_block[1]);
+        [place(block_ends, column, in_block[0]), row_place]
+    }
+}
+
+/// What is inside an interval of a distribution, as a number from 0 to 1.
+fn place(ends: &[u32], index: usize, inside: f64) -> f64 {
+    let upper = ends.get(index + 1).copied().unwrap_or(1 << 31);
+    assert!(ends[index] < upper, "an empty interval was chosen");
+    (f64::from(ends[index]) + f64::from(upper - ends[index]) * inside) / ALL
+}
+
+/// Numbers at and next to the ends of blocks, rows and columns, the least and the greatest.
+fn hard_numbers(words: &Words) -> Vec<[u32; 2]> {
+    let about = |number: f64| {
+        let bits = (number * 4_294_967_296.0) as u32;
+        [bits, bits.wrapping_sub(1), bits | 1, bits.wrapping_sub(512)]
+    };
+    let mut random = Random(21);
+    let mut pairs = vec![[0, 0], [u32::MAX, u32::MAX], [0, u32::MAX], [u32::MAX, 0]];
     pairs.extend((0..50_000).map(|_| [random.bits() as u32, random.bits() as u32]));
+    let [columns, rows] = words.blocks;
+    for row in 0..rows {
+        let y = f64::from(words.table()[row]) / ALL;
+        for column in 0..columns {
+            let x = f64::from(words.table()[rows + row * columns + column]) / ALL;
+            let both = about(y).into_iter().flat_map(|y| about(x).map(|x| [x, y]));
+            pairs.extend(both);
+        }
+    }
     pairs
 }
 
+/// The place in the cell that a pair of numbers chooses gives the numbers back, and no empty cell is chosen.
 #[test]
 fn numbers_choose_the_cells_that_the_distribution_says() {
     let narrow = |x: usize, y: usize| ((x * y) % 5) as f32;
@@ -229,66 +320,75 @@ fn numbers_choose_the_cells_that_the_distribution_says() {
         (picture(1, 1, |_, _| 2.0), [1, 2]),
         (picture(1, 19, |_, y| narrow(1, y)), [1, 20]),
         (picture(23, 1, |x, _| narrow(x, 1)), [23, 2]),
+        (picture(700, 333, narrow), [700, 334]),
     ] {
-        let bench = Bench::new(&scene, Vec3::ZERO, Vec3::Y);
+        let bench = Bench::new(&scene, Vec3::ZERO, Vec3::Y).both_sides();
         let table = &bench.stage.prepared.environment;
-        let numbers = hard_numbers(&table.cdf, size);
+        let words = Words::new(&table.cdf, size);
+        let numbers = hard_numbers(&words);
         let inputs: Vec<[f32; 4]> = numbers
             .iter()
             .map(|[x, y]| [f32::from_bits(*x), f32::from_bits(*y), 0.0, 0.0])
             .collect();
         let results = bench.evaluate("invert_environment", &inputs);
         for (pair, result) in numbers.iter().zip(results) {
-            let expected = chosen(&table.cdf, size, *pair);
-            let result = result.map(f64::from);
-            assert_eq!(result[..2], expected[..2], "{pair:?} in {size:?}");
-            let cell = result[1] as usize * size[0] + result[0] as usize;
-            assert!(table.texels[cell][3] > 0.0, "{pair:?} in {size:?}");
-            for c in 2..4 {
-                assert!(
-                    (result[c] - expected[c]).abs() < 3e-7 && result[c] < 1.0,
-                    "{pair:?}"
-                );
+            let cell = [result[0] as usize, result[1] as usize];
+            let inside = [f64::from(result[2]), f64::from(result[3])];
+            assert!(inside.iter().all(|i| (0.0..1.0).contains(i)), "{pair:?}");
+            let density = table.texels[cell[1] * size[0] + cell[0]][3];
+            assert!(density > 0.0, "{pair:?} in {size:?}");
+            let back = words.numbers(cell, inside);
+            for (number, back) in pair.iter().zip(back) {
+                let number = f64::from(*number) / (2.0 * ALL);
+                assert!((number - back).abs() < 3e-7, "{pair:?} in {size:?}: {back}");
             }
         }
     }
 }
 
 /// Mean and variance, over pixels, of the light that 64 samples estimate; half of it is the sun's.
-fn estimate(setup: impl Fn(Setup) -> Setup) -> (f64, f64) {
+fn estimate(both_sides: bool, setup: impl Fn(Setup) -> Setup) -> (f64, f64) {
     const PIXELS: usize = 4096;
     let mut bench = Bench::new(&sunny(1e4), Vec3::ZERO, Vec3::new(0.2, 1.0, 0.1));
+    if both_sides {
+        bench = bench.both_sides();
+    }
     bench.setup = setup(bench.setup);
     let estimates = bench.estimate("estimate_environment", PIXELS, 64);
     let (mean, error) = mean_and_error(estimates.iter().map(|e| f64::from(e[0])));
     (mean, error * error * PIXELS as f64)
 }
 
+fn assert_same_mean((mean, variance): (f64, f64), (other, other_variance): (f64, f64)) {
+    let error = ((variance + other_variance) / 4096.0).sqrt();
+    assert!((mean - other).abs() < 6.0 * error, "{mean} {other}");
+}
+
 /// Sobol points keep their order, so that the variance at 64 samples is a small part of that of
 /// independent samples; if the numbers are shuffled first, it is not.
 #[test]
 fn sobol_samples_stay_well_spread() {
-    let (mean, independent) = estimate(|setup| setup);
-    let (sobol_mean, sobol) = estimate(|setup| setup.sampler("sobol"));
-    let (_, shuffled) = estimate(|setup| {
+    let independent = estimate(true, |setup| setup);
+    let sobol = estimate(true, |setup| setup.sampler("sobol"));
+    let (_, shuffled) = estimate(true, |setup| {
         let (from, to) = (
-            "= environment_choose(bits);",
-            "= environment_choose(vec2u(mix32(bits.x), mix32(bits.y)));",
+            "= environment_choose(bits, normal);",
+            "= environment_choose(vec2u(mix32(bits.x), mix32(bits.y)), normal);",
         );
         setup.sampler("sobol").patched(ENVIRONMENT, from, to)
     });
-    println!("independent {independent:e}, Sobol {sobol:e}, shuffled {shuffled:e}");
-    let error = (independent / 4096.0).sqrt();
-    assert!(
-        (mean - sobol_mean).abs() < 6.0 * error,
-        "{mean} {sobol_mean}"
-    );
-    assert!(
-        sobol * SOBOL_GAIN < independent,
-        "{sobol:e} {independent:e}"
-    );
-    assert!(
-        shuffled * SOBOL_GAIN > independent,
-        "{shuffled:e} {independent:e}"
-    );
+    println!("independent {independent:?}, Sobol {sobol:?}, shuffled {shuffled:e}");
+    assert_same_mean(independent, sobol);
+    assert!(sobol.1 * SOBOL_GAIN < independent.1);
+    assert!(shuffled * SOBOL_GAIN > independent.1);
+}
+
+/// The cosine at the surface varies within a block of cells alone, and so does the variance of a table for the normal.
+#[test]
+fn a_normal_leaves_little_variance() {
+    let both_sides = estimate(true, |setup| setup);
+    let normal = estimate(false, |setup| setup);
+    println!("from both sides {both_sides:?}, for a normal {normal:?}");
+    assert_same_mean(both_sides, normal);
+    assert!(normal.1 * NORMAL_GAIN < both_sides.1);
 }

@@ -1,14 +1,16 @@
 // Light from infinitely far away: constant, or an equirectangular picture,
 // u = 0.5 + atan2(d.z, d.x) / 2 pi, v = acos(d.y) / pi from the top row.
 
+#include "light/environment_choice.wgsl"
+
 struct EnvironmentLight {
     radiance: vec3f,
     // Density over solid angle with which environment_sample returns the direction.
     pdf: f32,
 }
 
-// What comes from `direction` to a surface with this shading normal.
-fn environment_light(normal: vec3f, direction: vec3f) -> EnvironmentLight {
+// What comes from `direction` to a surface with this shading normal, on its side or on both.
+fn environment_light(normal: vec3f, both_sides: bool, direction: vec3f) -> EnvironmentLight {
     if (!HAS_ENVIRONMENT_IMAGE) {
         return EnvironmentLight(frame.environment_radiance, pdf_cosine_hemisphere(dot(direction, normal)));
     }
@@ -18,14 +20,15 @@ fn environment_light(normal: vec3f, direction: vec3f) -> EnvironmentLight {
     let v = arctan2(sin_theta, d.y) * INV_PI;
     let point = environment_at(vec2f(u, v));
     let cell = environment_interpolate(environment_corners(point.cell), point.inside);
-    return EnvironmentLight(frame.environment_radiance * cell.radiance, environment_pdf(cell.density, sin_theta));
+    let density = cell.density * environment_block_probability(point.cell, select(normal, vec3f(0.0), both_sides));
+    return EnvironmentLight(frame.environment_radiance * cell.radiance, environment_pdf(density, sin_theta));
 }
 
 fn environment_radiance(direction: vec3f) -> vec3f {
-    return environment_light(vec3f(0.0), direction).radiance;
+    return environment_light(vec3f(0.0), true, direction).radiance;
 }
 
-fn environment_sample(s: Surface, bits: vec2u) -> LightSample {
+fn environment_sample(s: Surface, both_sides: bool, bits: vec2u) -> LightSample {
     var sample = no_light_sample();
     sample.at_infinity = true;
     if (!HAS_ENVIRONMENT_IMAGE) {
@@ -37,7 +40,8 @@ fn environment_sample(s: Surface, bits: vec2u) -> LightSample {
         }
         return sample;
     }
-    let chosen = environment_choose(bits);
+    let normal = select(s.shading.z, vec3f(0.0), both_sides);
+    let chosen = environment_choose(bits, normal);
     let corners = environment_corners(chosen.cell);
     let inside = environment_warp(corners, chosen);
     let cell = environment_interpolate(corners, inside);
@@ -46,7 +50,8 @@ fn environment_sample(s: Surface, bits: vec2u) -> LightSample {
     let theta = cos_sin_2pi(0.5 * uv.y);
     let phi = -cos_sin_2pi(uv.x);
     sample.wi = environment_to_world(vec3f(theta.y * phi.x, theta.x, theta.y * phi.y));
-    sample.pdf = environment_pdf(cell.density, theta.y);
+    let density = cell.density * environment_block_probability(chosen.cell, normal);
+    sample.pdf = environment_pdf(density, theta.y);
     if (sample.pdf > 0.0) {
         sample.weight = frame.environment_radiance * cell.radiance / sample.pdf;
     }
@@ -58,15 +63,6 @@ fn environment_size() -> vec2f {
     return vec2f(f32(frame.environment_width), f32(frame.environment_height));
 }
 
-// A point of a cell between the centres of four texels. The first row of cells begins half a cell
-// above the picture, the last ends half a cell below it, the last column ends in the first texel's.
-struct EnvironmentPoint {
-    // Column and row.
-    cell: vec2u,
-    // Where in the cell, from 0 to 1.
-    inside: vec2f,
-}
-
 fn environment_at(uv: vec2f) -> EnvironmentPoint {
     let q = uv * environment_size() + vec2f(-0.5, 0.5);
     let next = min(floor_to_u32(floor(q.x) + 1.0), frame.environment_width);
@@ -75,62 +71,7 @@ fn environment_at(uv: vec2f) -> EnvironmentPoint {
     return EnvironmentPoint(vec2u(column, row), q - floor(q));
 }
 
-// The row by the marginal distribution, then the column by the row's own (Pharr, Jakob and
-// Humphreys 2023, section A.5.2). Both rise with the number that chooses, so that well-spread
-// points stay so. The low bits of the other number fill in what a rare row or column lacks.
-fn environment_choose(bits: vec2u) -> EnvironmentPoint {
-    let width = frame.environment_width;
-    let rows = frame.environment_height + 1u;
-    // Where the guides are.
-    let row_guide = rows + rows * width;
-    let column_guide = row_guide + environment_guide_length(rows);
-    let row = environment_invert(0u, rows, row_guide, bits.y >> 1u, bits.x & 0xffffu);
-    let own_guide = column_guide + row.index * environment_guide_length(width);
-    let column = environment_invert(rows + row.index * width, width, own_guide, bits.x >> 1u, bits.y & 0xffffu);
-    return EnvironmentPoint(vec2u(column.index, row.index), vec2f(column.inside, row.inside));
-}
-
-struct EnvironmentInterval {
-    index: u32,
-    // Where in the interval, from 0 to 1.
-    inside: f32,
-}
-
-// A guide has 2^this values, and one more, for so many intervals (src/render/cdf.rs).
-fn environment_guide_bits(count: u32) -> u32 {
-    return firstLeadingBit(max(count, 4u)) - 2u;
-}
-
-fn environment_guide_length(count: u32) -> u32 {
-    return (1u << environment_guide_bits(count)) + 1u;
-}
-
-// Inverts a cumulative distribution of `count` intervals, whose lower ends are the words from
-// `first` on, in 2^-31: finds the one that holds `number`. An empty one is never found. The words from
-// `guide` on say between which intervals it is.
-fn environment_invert(first: u32, count: u32, guide: u32, number: u32, low_bits: u32) -> EnvironmentInterval {
-    let entry = guide + (number >> (31u - environment_guide_bits(count)));
-    var index = load_environment_cdf(entry);
-    var last = load_environment_cdf(entry + 1u);
-    while (index < last) {
-        if (count_step()) {
-            break;
-        }
-        let middle = (index + last + 1u) / 2u;
-        let above = load_environment_cdf(first + middle) <= number;
-        index = select(index, middle, above);
-        last = select(middle - 1u, last, above);
-    }
-    let lower = load_environment_cdf(first + index);
-    var upper = 0x80000000u;
-    if (index + 1u < count) {
-        upper = load_environment_cdf(first + index + 1u);
-    }
-    let offset = f32(number - lower) + f32(low_bits) * 1.52587890625e-5;
-    return EnvironmentInterval(index, min(offset / f32(upper - lower), ONE_BELOW));
-}
-
-// The texels at the corners of a cell, and the cell's mean density over (u, v) / 2 pi^2.
+// The texels at the corners of a cell, and the cell's mean density over (u, v) / 2 pi^2 once its block is chosen.
 struct EnvironmentCorners {
     top_left: vec3f,
     top_right: vec3f,

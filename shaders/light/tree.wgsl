@@ -109,14 +109,6 @@ fn light_split(link: u32, receiver: LightReceiver) -> LightSplit {
     return LightSplit(threshold, share, f32(0u - threshold) * 2.3283064365386963e-10, a.link, b.link);
 }
 
-// Where a uniform number lies between two ends, as another one: so that one number makes all decisions
-// and well-spread numbers stay so. Bits that the number has used up are taken from `more`.
-fn renewed(number: u32, lower: u32, count: u32, more: u32) -> u32 {
-    let offset = f32(number - lower) + f32(more >> 16u) * 1.52587890625e-5;
-    let share = min(offset / f32(count), ONE_BELOW);
-    return (floor_to_u32(share * 16777216.0) << 8u) | ((more >> 8u) & 255u);
-}
-
 // A light of the tree or, with the probability that node 1 says, one of the others.
 fn choose_light_in_tree(receiver: LightReceiver, bits: vec2u) -> LightChoice {
     var number = bits.x;

@@ -77,3 +77,11 @@ fn power_heuristic(pdf: f32, other: f32) -> f32 {
     }
     return 1.0 / (1.0 + square(other / pdf));
 }
+
+// Where a uniform number lies between two ends, as another one: so that one number makes all decisions
+// and well-spread numbers stay so. Bits that the number has used up are taken from `more`.
+fn renewed(number: u32, lower: u32, count: u32, more: u32) -> u32 {
+    let offset = f32(number - lower) + f32(more >> 16u) * 1.52587890625e-5;
+    let share = min(offset / f32(count), ONE_BELOW);
+    return (floor_to_u32(share * 16777216.0) << 8u) | ((more >> 8u) & 255u);
+}

@@ -44,9 +44,10 @@ fn guide_bits(count: usize) -> u32 {
 }
 
 /// Which interval of a distribution holds each of the numbers i · 2³¹ / (n - 1), i from 0 to n - 1, the last one less:
-/// where to look for a number between two of them (Chen and Asau 1974, the method of guide tables).
+/// where to look for a number between two of them (Chen and Asau 1974, the method of guide tables). n is a
+/// [`guide_length`].
 pub fn guide(cdf: &[u32], guide: &mut [u32]) {
-    let shift = CDF_ONE.ilog2() - guide_bits(cdf.len());
+    let shift = CDF_ONE.ilog2() - (guide.len() - 1).ilog2();
     for (i, interval) in guide.iter_mut().enumerate() {
         let number = (i << shift).min(CDF_ONE as usize - 1) as u32;
         let after = cdf.partition_point(|lower| *lower <= number);

@@ -42,6 +42,12 @@ impl Bench {
         }
     }
 
+    /// Light from both sides counts.
+    pub fn both_sides(mut self) -> Self {
+        self.point[3] = 1.0;
+        self
+    }
+
     pub fn draw(&self, entry: &str, seed: u32) -> Vec<Drawn> {
         let kernel = self.setup.kernel("lights", entry);
         let inputs = [self.point, self.normal];

@@ -5,7 +5,7 @@
 #include "accel/stack.wgsl"
 
 @group(0) @binding(13) var<uniform> params: vec4u;
-// The point, the shading normal, then directions.
+// The point (w is 1 if light from both sides counts), the shading normal, then directions.
 @group(0) @binding(14) var<storage, read> inputs: array<vec4f>;
 @group(0) @binding(15) var<storage, read_write> outputs: array<vec4f>;
 
@@ -15,6 +15,10 @@ fn test_surface() -> Surface {
     s.normal = inputs[1].xyz;
     s.shading = frame_from_z(inputs[1].xyz);
     return s;
+}
+
+fn both_sides() -> bool {
+    return inputs[0].w != 0.0;
 }
 
 fn write(index: u32, s: LightSample) {
@@ -36,7 +40,7 @@ fn sample_any(@builtin(global_invocation_id) id: vec3u) {
 fn sample_environment(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < params.x) {
         var random = sampler_begin(vec2u(5u, 9u), vec2u(id.x, 0u), params.y);
-        write(id.x, environment_sample(test_surface(), next_2d_bits(&random)));
+        write(id.x, environment_sample(test_surface(), both_sides(), next_2d_bits(&random)));
     }
 }
 
@@ -50,7 +54,7 @@ fn estimate_environment(@builtin(global_invocation_id) id: vec3u) {
     var sum = vec3f(0.0);
     for (var i = 0u; i < params.z; i += 1u) {
         var random = sampler_begin(vec2u(id.x, 3u), vec2u(i, 0u), params.y);
-        let light = environment_sample(s, next_2d_bits(&random));
+        let light = environment_sample(s, both_sides(), next_2d_bits(&random));
         sum += light.weight * max(dot(light.wi, s.normal), 0.0);
     }
     outputs[id.x] = vec4f(sum / f32(params.z), 0.0);
@@ -60,7 +64,8 @@ fn estimate_environment(@builtin(global_invocation_id) id: vec3u) {
 @compute @workgroup_size(64)
 fn invert_environment(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < params.x) {
-        let p = environment_choose(bitcast<vec2u>(inputs[2u + id.x].xy));
+        let normal = select(inputs[1].xyz, vec3f(0.0), both_sides());
+        let p = environment_choose(bitcast<vec2u>(inputs[2u + id.x].xy), normal);
         outputs[id.x] = vec4f(f32(p.cell.x), f32(p.cell.y), p.inside);
     }
 }
@@ -70,7 +75,7 @@ fn invert_environment(@builtin(global_invocation_id) id: vec3u) {
 fn evaluate_environment(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < params.x) {
         let d = inputs[2u + id.x].xyz;
-        let light = environment_light(inputs[1].xyz, d);
+        let light = environment_light(inputs[1].xyz, both_sides(), d);
         outputs[id.x] = vec4f(light.radiance, light.pdf);
     }
 }

@@ -6,8 +6,12 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::cdf::{fixed_point_cdf, guide, guide_length, probabilities};
+use super::cdf::probabilities;
 use crate::scene::EnvironmentImage;
+use distribution::{Grid, distribution};
+
+mod distribution;
+mod normals;
 
 /// Texels and distribution of an equirectangular environment.
 ///
@@ -17,10 +21,10 @@ use crate::scene::EnvironmentImage;
 #[derive(Debug, Clone, Default)]
 pub struct EnvironmentTable {
     /// RGB radiance, and the mean density over (u, v) with which points of the cell to the right
-    /// and below are drawn, over 2π². The first and the last row are there twice, as the poles' own.
+    /// and below are drawn once its block is chosen, over 2π². The first and the last row are there twice, as the
+    /// poles' own.
     pub texels: Vec<[f32; 4]>,
-    /// Lower ends of the intervals, in 2⁻³¹: of the rows of cells, then in each row of its columns; after
-    /// all of them the guides, of the rows and then of each row's columns. Empty if no texel sheds light.
+    /// What a cell is chosen by (see [`Grid`]). Empty if no texel sheds light.
     pub cdf: Vec<u32>,
     /// Mean radiance over the sphere.
     pub mean: DVec3,
@@ -30,7 +34,7 @@ impl EnvironmentTable {
     /// Builds the distribution in f64. A cell's weight is its mean luminance times its solid
     /// angle: zero only where the radiance is.
     pub fn new(image: &EnvironmentImage) -> Self {
-        let cdf = cdf(image);
+        let cdf = distribution(image);
         Self {
             texels: texels(image, &cdf),
             cdf,
@@ -59,35 +63,6 @@ fn row_span(row: usize, height: usize) -> (f64, f64) {
     ((middle - 0.5).max(0.0), (middle + 0.5).min(height as f64))
 }
 
-/// The marginal distribution of the rows, then the rows' own.
-fn cdf(image: &EnvironmentImage) -> Vec<u32> {
-    let (width, rows) = (image.width, image.height + 1);
-    let mut cdf = vec![0; rows + width * rows];
-    let (marginal, conditional) = cdf.split_at_mut(rows);
-    let sums: Vec<f64> = conditional
-        .par_chunks_mut(width)
-        .enumerate()
-        .map(|(row, ends)| fixed_point_cdf(&row_weights(image, row), ends))
-        .collect();
-    if fixed_point_cdf(&sums, marginal) > 0.0 {
-        let guides = guides(marginal, conditional, width);
-        [cdf, guides].concat()
-    } else {
-        Vec::new()
-    }
-}
-
-fn guides(marginal: &[u32], conditional: &[u32], width: usize) -> Vec<u32> {
-    let (rows, columns) = (guide_length(marginal.len()), guide_length(width));
-    let mut guides = vec![0; rows + marginal.len() * columns];
-    let (of_rows, of_columns) = guides.split_at_mut(rows);
-    guide(marginal, of_rows);
-    let each = of_columns.par_chunks_mut(columns);
-    each.zip(conditional.par_chunks(width))
-        .for_each(|(into, ends)| guide(ends, into));
-    guides
-}
-
 fn row_weights(image: &EnvironmentImage, row: usize) -> Vec<f64> {
     let (width, height) = (image.width, image.height);
     let (above, below) = (row.saturating_sub(1), row.min(height - 1));
@@ -107,9 +82,8 @@ fn row_weights(image: &EnvironmentImage, row: usize) -> Vec<f64> {
 /// The device's texels. The densities are those that the distribution realises.
 fn texels(image: &EnvironmentImage, cdf: &[u32]) -> Vec<[f32; 4]> {
     let (width, height) = (image.width, image.height);
+    let grid = Grid::new(image);
     let mut texels = vec![[0.0; 4]; width * (height + 2)];
-    let marginal = cdf.get(..=height).unwrap_or_default();
-    let rows: Vec<f64> = probabilities(marginal).collect();
     texels
         .par_chunks_mut(width)
         .enumerate()
@@ -118,13 +92,21 @@ fn texels(image: &EnvironmentImage, cdf: &[u32]) -> Vec<[f32; 4]> {
             for (texel, [r, g, b]) in texels.iter_mut().zip(&image.texels[y * width..]) {
                 *texel = [*r, *g, *b, 0.0];
             }
-            // The columns of a row that is never chosen mean nothing.
-            if let Some(p) = rows.get(row).filter(|p| **p > 0.0) {
-                let columns = &cdf[height + 1 + row * width..][..width];
+            if row < grid.rows && !cdf.is_empty() {
                 let (a, b) = row_span(row, height);
                 let area = (b - a) / (width as f64 * height as f64);
-                for (texel, column) in texels.iter_mut().zip(probabilities(columns)) {
-                    texel[3] = (p * column / (area * 2.0 * PI * PI)) as f32;
+                for block in 0..grid.block_columns() {
+                    let p = grid.row_probability(cdf, block, row);
+                    let columns = grid.columns_of(block);
+                    let cells = &cdf[row * width..][columns.clone()];
+                    // The columns of a row that is never chosen mean nothing.
+                    for (texel, q) in texels[columns].iter_mut().zip(probabilities(cells)) {
+                        texel[3] = if p > 0.0 {
+                            (p * q / (area * 2.0 * PI * PI)) as f32
+                        } else {
+                            0.0
+                        };
+                    }
                 }
             }
         });
@@ -160,26 +142,41 @@ mod tests {
         }
     }
 
-    /// Integral of the density over the unit square.
-    fn integral(table: &EnvironmentTable, width: usize, height: usize) -> f64 {
-        let rows = table.texels.chunks(width).take(height + 1).enumerate();
-        let probability = |(row, texels): (usize, &[[f32; 4]])| {
-            let (a, b) = row_span(row, height);
-            let densities = texels.iter().map(|t| f64::from(t[3]));
-            densities.sum::<f64>() * (b - a)
+    /// Integral of the density, for the normals of each table, over the unit square.
+    fn integrals(table: &EnvironmentTable, image: &EnvironmentImage) -> Vec<f64> {
+        let grid = Grid::new(image);
+        let (columns, rows) = (grid.block_columns(), grid.block_rows());
+        let mut of_blocks = vec![0.0; columns * rows];
+        for block_row in 0..rows {
+            for row in grid.rows_of(block_row) {
+                let (a, b) = row_span(row, image.height);
+                for column in 0..columns {
+                    let cells = &table.texels[row * grid.width..][grid.columns_of(column)];
+                    let densities = cells.iter().map(|t| f64::from(t[3]));
+                    of_blocks[block_row * columns + column] += densities.sum::<f64>() * (b - a);
+                }
+            }
+        }
+        let area = 2.0 * PI * PI / (image.width * image.height) as f64;
+        let length = rows + 2 * columns * rows;
+        let tables = &table.cdf[table.cdf.len() - length * normals::TABLES..];
+        let chance = |word: &u32| f64::from(f32::from_bits(*word)) * area;
+        let integral = |table: &[u32]| {
+            let chances = table[rows + columns * rows..].iter().map(chance);
+            chances.zip(&of_blocks).map(|(p, d)| p * d).sum()
         };
-        rows.map(probability).sum::<f64>() * 2.0 * PI * PI / (width * height) as f64
+        tables.chunks(length).map(integral).collect()
     }
 
     #[test]
     fn a_single_texel_has_all_of_the_probability() {
-        let table = EnvironmentTable::new(&image(1, 1, |_, _| [1.0, 2.0, 3.0]));
-        // Both halves alike, but for the rounding of their solid angles.
-        let half = table.cdf[1];
-        assert!(half.abs_diff(1 << 30) <= 1, "{half}");
-        assert_eq!(table.cdf[..4], [0, half, 0, 0]);
-        let density = (0.5 / (PI * PI)) as f32;
-        let cell = [1.0, 2.0, 3.0, density];
+        let image = image(1, 1, |_, _| [1.0, 2.0, 3.0]);
+        let table = EnvironmentTable::new(&image);
+        for integral in integrals(&table, &image) {
+            assert!((integral - 1.0).abs() < 1e-6, "{integral}");
+        }
+        // Two blocks of half a texel, each with all of its own density.
+        let cell = [1.0, 2.0, 3.0, (1.0 / (PI * PI)) as f32];
         assert_eq!(table.texels, [cell, cell, [1.0, 2.0, 3.0, 0.0]]);
     }
 
@@ -201,8 +198,9 @@ mod tests {
             _ => [0.5, 0.25, 1.0],
         });
         let table = EnvironmentTable::new(&image);
-        let integral = integral(&table, width, height);
-        assert!((integral - 1.0).abs() < 1e-6, "{integral}");
+        for integral in integrals(&table, &image) {
+            assert!((integral - 1.0).abs() < 1e-5, "{integral}");
+        }
         let is_black = |x: usize, y: usize| image.texels[y * width + x] == [0.0; 3];
         for row in 0..=height {
             for x in 0..width {

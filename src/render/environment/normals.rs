@@ -1,0 +1,193 @@
+//! Which block of an environment to choose, for a surface with a given normal: in proportion to the light that comes
+//! from it times the cosine at the surface. So no sample is lost below the horizon, and few near it.
+
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::distribution::{Grid, span};
+use super::row_span;
+use crate::render::cdf::{fixed_point_cdf, probabilities};
+
+/// Normals are told apart on a square of this many cells a side, the octahedral map of the sphere.
+const NORMALS: usize = 16;
+/// A table for each, and one for what receives light from all sides.
+pub const TABLES: usize = NORMALS * NORMALS + 1;
+/// Parts of a block along each side, of which each has its own cosine.
+pub const SUBDIVISION: usize = 2;
+
+/// Part of a block: what it sheds, and where it is.
+struct Part {
+    block: usize,
+    weight: f64,
+    direction: DVec3,
+    /// Farthest that a direction in it may be from `direction`, as points of the unit sphere.
+    radius: f64,
+}
+
+/// The tables of [`Grid`], given the weights of the parts of blocks in each row of cells.
+pub fn tables(grid: Grid, weights: &[Vec<f64>]) -> Vec<u32> {
+    let parts = parts(grid, weights);
+    let normal = |index: usize| (index + 1 < TABLES).then(|| normal_of(index));
+    let tables = (0..TABLES).into_par_iter();
+    tables
+        .flat_map(|index| table(grid, &parts, normal(index)))
+        .collect()
+}
+
+fn parts(grid: Grid, weights: &[Vec<f64>]) -> Vec<Part> {
+    let columns = SUBDIVISION * grid.block_columns();
+    let rows = SUBDIVISION * grid.block_rows();
+    let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    let part = |(column, row)| {
+        let cells = span(row, rows, grid.rows);
+        let weight: f64 = weights[cells.clone()].iter().map(|r| r[column]).sum();
+        let block = row / SUBDIVISION * grid.block_columns() + column / SUBDIVISION;
+        (weight > 0.0).then(|| {
+            Part::new(
+                grid,
+                block,
+                weight,
+                span(column, columns, grid.width),
+                cells,
+            )
+        })
+    };
+    places.filter_map(part).collect()
+}
+
+impl Part {
+    fn new(
+        grid: Grid,
+        block: usize,
+        weight: f64,
+        columns: Range<usize>,
+        rows: Range<usize>,
+    ) -> Self {
+        let (width, height) = (grid.width as f64, grid.rows - 1);
+        let v = [
+            row_span(rows.start, height).0,
+            row_span(rows.end - 1, height).1,
+        ]
+        .map(|row| row / height as f64);
+        let u = [columns.start, columns.end].map(|column| (column as f64 + 0.5) / width);
+        // A parallel is nowhere longer than the equator.
+        let half = DVec2::new(PI * (u[1] - u[0]), 0.5 * PI * (v[1] - v[0]));
+        Self {
+            block,
+            weight,
+            direction: direction(0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1])),
+            radius: 2.0 * (0.5 * half.length().min(PI)).sin(),
+        }
+    }
+}
+
+fn direction(u: f64, v: f64) -> DVec3 {
+    let (phi, theta) = (2.0 * PI * u - PI, PI * v);
+    DVec3::new(
+        theta.sin() * phi.cos(),
+        theta.cos(),
+        theta.sin() * phi.sin(),
+    )
+}
+
+/// Middle of the normals of a table, and how far from it they may be.
+fn normal_of(index: usize) -> (DVec3, f64) {
+    let at = |x: f64, y: f64| {
+        let cell = DVec2::new((index % NORMALS) as f64 + x, (index / NORMALS) as f64 + y);
+        octahedral(2.0 * cell / NORMALS as f64 - 1.0)
+    };
+    let middle = at(0.5, 0.5);
+    let corners = [at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)];
+    let radius = corners
+        .iter()
+        .map(|c| c.distance(middle))
+        .fold(0.0, f64::max);
+    (middle, 1.05 * radius)
+}
+
+/// The direction of a point of the square [-1, 1]².
+fn octahedral(p: DVec2) -> DVec3 {
+    let z = 1.0 - p.x.abs() - p.y.abs();
+    let below = (-z).max(0.0);
+    DVec3::new(p.x - below.copysign(p.x), p.y - below.copysign(p.y), z).normalize()
+}
+
+fn table(grid: Grid, parts: &[Part], normal: Option<(DVec3, f64)>) -> Vec<u32> {
+    let (columns, rows) = (grid.block_columns(), grid.block_rows());
+    let mut weights = vec![0.0; columns * rows];
+    for part in parts {
+        let cosine = normal.map_or(1.0, |(n, radius)| {
+            mean_cosine(n.dot(part.direction), part.radius + radius)
+        });
+        weights[part.block] += part.weight * cosine;
+    }
+    let mut table = vec![0; rows + 2 * columns * rows];
+    let (of_rows, rest) = table.split_at_mut(rows);
+    let (of_blocks, chances) = rest.split_at_mut(columns * rows);
+    let sums: Vec<f64> = weights
+        .chunks(columns)
+        .zip(of_blocks.chunks_mut(columns))
+        .map(|(weights, ends)| fixed_point_cdf(weights, ends))
+        .collect();
+    if fixed_point_cdf(&sums, of_rows) > 0.0 {
+        let each = of_blocks
+            .chunks(columns)
+            .zip(chances.chunks_mut(columns))
+            .zip(&sums);
+        for (p, ((ends, chances), _)) in probabilities(of_rows)
+            .zip(each)
+            .filter(|(_, (_, sum))| **sum > 0.0)
+        {
+            for (chance, q) in chances.iter_mut().zip(probabilities(ends)) {
+                *chance = ((p * q) as f32).to_bits();
+            }
+        }
+    }
+    table
+}
+
+/// About the mean of the cosine, or 0 below the horizon, at most `radius` around where it is `cosine`; 0 only if all
+/// of it is below.
+fn mean_cosine(cosine: f64, radius: f64) -> f64 {
+    if cosine >= radius {
+        cosine
+    } else {
+        (cosine + radius).max(0.0).powi(2) / (4.0 * radius)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cosine_is_0_only_below_the_horizon() {
+        for radius in [1e-6, 0.01, 0.5, 2.0] {
+            assert_eq!(mean_cosine(-radius, radius), 0.0);
+            assert_eq!(mean_cosine(-1.0 - radius, radius), 0.0);
+            assert!(mean_cosine(-0.999 * radius, radius) > 0.0);
+            assert_eq!(mean_cosine(radius, radius), radius);
+        }
+        assert_eq!(mean_cosine(0.7, 0.1), 0.7);
+    }
+
+    #[test]
+    fn the_normals_of_all_tables_cover_the_sphere() {
+        let middles: Vec<(DVec3, f64)> = (0..TABLES - 1).map(normal_of).collect();
+        for i in 0..10_000 {
+            // A spiral of even points.
+            let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 10_000.0;
+            let (sin, cos) = (2.4 * f64::from(i)).sin_cos();
+            let r = (1.0 - z * z).sqrt();
+            let normal = DVec3::new(r * cos, r * sin, z);
+            assert!(
+                middles
+                    .iter()
+                    .any(|(m, radius)| m.distance(normal) < *radius)
+            );
+        }
+    }
+}
