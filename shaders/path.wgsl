@@ -94,7 +94,7 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
     }
     if (hit.triangle == NONE) {
         if (HAS_ENVIRONMENT) {
-            let light = environment_light((*path).last.normal, (*path).last.both_sides, ray.direction);
+            let light = environment_light((*path).last.normal, (*path).last.both_sides, ray.direction, (*path).last.alone);
             (*path).L += beta * environment_hit_weight(light.pdf, (*path).last) * light.radiance;
         }
         return;

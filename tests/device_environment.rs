@@ -237,15 +237,22 @@ const ALL: f64 = (1u32 << 31) as f64;
 struct Words<'a> {
     words: &'a [u32],
     cells: [usize; 2],
+    /// Cells along the sides of a block.
+    block: [usize; 2],
     blocks: [usize; 2],
 }
 
 impl<'a> Words<'a> {
     fn new(words: &'a [u32], cells: [usize; 2]) -> Self {
-        let blocks = [cells[0].min(32), cells[1].min(16)];
+        let texels = [cells[0], cells[1] - 1];
+        let block = [texels[0] as f64 / 32.0, texels[1] as f64 / 16.0];
+        let block =
+            block.map(|least| 1usize << (0..).find(|n| f64::from(1 << n) >= least).unwrap_or(0));
+        let blocks = [0, 1].map(|axis| cells[axis].div_ceil(block[axis]));
         Self {
             words,
             cells,
+            block,
             blocks,
         }
     }
@@ -258,11 +265,12 @@ impl<'a> Words<'a> {
 
     /// Block of a cell along an axis, and the block's cells.
     fn block_of(&self, axis: usize, cell: usize) -> (usize, std::ops::Range<usize>) {
-        let (blocks, cells) = (self.blocks[axis], self.cells[axis]);
-        let range = |b: usize| b * cells / blocks..(b + 1) * cells / blocks;
-        let found = (0..blocks).find(|b| range(*b).contains(&cell));
-        let block = found.unwrap_or(blocks);
-        (block, range(block))
+        let block = cell / self.block[axis];
+        let first = block * self.block[axis];
+        (
+            block,
+            first..(first + self.block[axis]).min(self.cells[axis]),
+        )
     }
 
     /// The numbers, from 0 to 1, by which a place in a cell (column and row) is chosen.

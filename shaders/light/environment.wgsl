@@ -10,7 +10,7 @@ struct EnvironmentLight {
 }
 
 // What comes from `direction` to a surface with this shading normal, on its side or on both.
-fn environment_light(normal: vec3f, both_sides: bool, direction: vec3f) -> EnvironmentLight {
+fn environment_light(normal: vec3f, both_sides: bool, direction: vec3f, alone: bool) -> EnvironmentLight {
     if (!HAS_ENVIRONMENT_IMAGE) {
         return EnvironmentLight(frame.environment_radiance, pdf_cosine_hemisphere(dot(direction, normal)));
     }
@@ -20,12 +20,16 @@ fn environment_light(normal: vec3f, both_sides: bool, direction: vec3f) -> Envir
     let v = arctan2(sin_theta, d.y) * INV_PI;
     let point = environment_at(vec2f(u, v));
     let cell = environment_interpolate(environment_corners(point.cell), point.inside);
-    let density = cell.density * environment_block_probability(point.cell, select(normal, vec3f(0.0), both_sides));
-    return EnvironmentLight(frame.environment_radiance * cell.radiance, environment_pdf(density, sin_theta));
+    var pdf = 0.0;
+    if (!alone) {
+        let density = cell.density * environment_block_probability(point.cell, select(normal, vec3f(0.0), both_sides));
+        pdf = environment_pdf(density, sin_theta);
+    }
+    return EnvironmentLight(frame.environment_radiance * cell.radiance, pdf);
 }
 
 fn environment_radiance(direction: vec3f) -> vec3f {
-    return environment_light(vec3f(0.0), true, direction).radiance;
+    return environment_light(vec3f(0.0), true, direction, true).radiance;
 }
 
 fn environment_sample(s: Surface, both_sides: bool, bits: vec2u) -> LightSample {

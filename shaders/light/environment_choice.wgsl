@@ -6,8 +6,8 @@
 #include "math/sampling.wgsl"
 #include "steps.wgsl"
 
-// Most blocks in a row and in a column.
-const ENVIRONMENT_BLOCKS: vec2u = vec2u(32u, 16u);
+// Binary logarithms of the most columns and rows of blocks.
+const ENVIRONMENT_BLOCKS: vec2i = vec2i(5, 4);
 // Side of the square of normals that have a table each.
 const ENVIRONMENT_NORMALS: u32 = 16u;
 
@@ -23,6 +23,8 @@ struct EnvironmentPoint {
 // The picture's cells and blocks (columns and rows), and where the words about them begin.
 struct EnvironmentGrid {
     cells: vec2u,
+    // Binary logarithms of a block's cells: lavapipe divides integers lane by lane.
+    shift: vec2u,
     blocks: vec2u,
     // Of the guides to a block's columns and rows.
     guide_bits: vec2u,
@@ -33,16 +35,19 @@ struct EnvironmentGrid {
 }
 
 fn environment_grid() -> EnvironmentGrid {
-    let cells = vec2u(frame.environment_width, frame.environment_height + 1u);
-    let blocks = min(ENVIRONMENT_BLOCKS, cells);
+    let size = vec2u(frame.environment_width, frame.environment_height);
+    let cells = size + vec2u(0u, 1u);
+    // Least powers of two that hold the size, over those of the blocks.
+    let shift = vec2u(max(vec2i(firstLeadingBit(size - 1u)) + 1 - ENVIRONMENT_BLOCKS, vec2i(0)));
+    let blocks = (cells + (vec2u(1u) << shift) - 1u) >> shift;
     // A guide has 2^this values, and one more, for so many intervals (src/render/cdf.rs).
-    let guide_bits = firstLeadingBit(max((cells + blocks - 1u) / blocks, vec2u(4u))) - 2u;
+    let guide_bits = max(shift, vec2u(2u)) - 2u;
     let guide_lengths = environment_guide_lengths(guide_bits);
     let row_ends = cells.x * cells.y;
     let cell_guides = row_ends + blocks.x * cells.y;
     let row_guides = cell_guides + blocks.x * cells.y * guide_lengths.x;
     let tables = row_guides + blocks.x * blocks.y * guide_lengths.y;
-    return EnvironmentGrid(cells, blocks, guide_bits, row_ends, cell_guides, row_guides, tables);
+    return EnvironmentGrid(cells, shift, blocks, guide_bits, row_ends, cell_guides, row_guides, tables);
 }
 
 fn environment_guide_lengths(bits: vec2u) -> vec2u {
@@ -67,8 +72,7 @@ fn environment_table(grid: EnvironmentGrid, normal: vec3f) -> u32 {
 // The probability with which environment_choose, for a normal, chooses the block that a cell is in.
 fn environment_block_probability(cell: vec2u, normal: vec3f) -> f32 {
     let grid = environment_grid();
-    // Block i begins at cell i * cells / blocks.
-    let block = ((cell + 1u) * grid.blocks - 1u) / grid.cells;
+    let block = cell >> grid.shift;
     let first = environment_table(grid, normal) + grid.blocks.y + grid.blocks.x * grid.blocks.y;
     return bitcast<f32>(load_environment_cdf(first + block.y * grid.blocks.x + block.x));
 }
@@ -84,8 +88,8 @@ fn environment_choose(bits: vec2u, normal: vec3f) -> EnvironmentPoint {
     let blocks = table + grid.blocks.y + block_row.index * grid.blocks.x;
     let block_column = environment_invert(blocks, grid.blocks.x, vec2u(0u, grid.blocks.x - 1u), bits.x, more.x);
     let block = vec2u(block_column.index, block_row.index);
-    let first = block * grid.cells / grid.blocks;
-    let count = (block + 1u) * grid.cells / grid.blocks - first;
+    let first = block << grid.shift;
+    let count = min(vec2u(1u) << grid.shift, grid.cells - first);
 
     more = more * 747796405u + 2891336453u;
     let lengths = environment_guide_lengths(grid.guide_bits);

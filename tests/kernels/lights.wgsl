@@ -75,7 +75,7 @@ fn invert_environment(@builtin(global_invocation_id) id: vec3u) {
 fn evaluate_environment(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < params.x) {
         let d = inputs[2u + id.x].xyz;
-        let light = environment_light(inputs[1].xyz, both_sides(), d);
+        let light = environment_light(inputs[1].xyz, both_sides(), d, false);
         outputs[id.x] = vec4f(light.radiance, light.pdf);
     }
 }

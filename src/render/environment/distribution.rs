@@ -5,14 +5,72 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::normals::{self, SUBDIVISION};
+use super::normals;
 use super::row_weights;
 use crate::render::cdf::{fixed_point_cdf, guide, guide_length, probabilities};
 use crate::scene::EnvironmentImage;
 
-/// Most blocks in a row and in a column; an environment of fewer cells has fewer.
-const BLOCK_COLUMNS: usize = 32;
-const BLOCK_ROWS: usize = 16;
+/// Binary logarithms of the most columns of blocks, and of the rows (not counting what the poles add).
+const BLOCK_COLUMNS: u32 = 5;
+const BLOCK_ROWS: u32 = 4;
+
+/// The columns or the rows of cells. They stand in runs of a power of two, the last of which may be shorter, since
+/// lavapipe divides integers lane by lane.
+#[derive(Debug, Clone, Copy)]
+pub struct Axis {
+    /// Cells.
+    pub count: usize,
+    /// Binary logarithm of the cells of a run.
+    shift: u32,
+}
+
+impl Axis {
+    /// The runs of which there are as many as blocks, for so many texels.
+    fn blocks(count: usize, texels: usize, log2_blocks: u32) -> Self {
+        let shift = texels
+            .next_power_of_two()
+            .ilog2()
+            .saturating_sub(log2_blocks);
+        Self { count, shift }
+    }
+
+    /// Runs of half the length, unless it is 1.
+    pub fn halves(self) -> Self {
+        let shift = self.shift.saturating_sub(1);
+        Self { shift, ..self }
+    }
+
+    /// Number of runs.
+    pub fn runs(self) -> usize {
+        self.count.div_ceil(1 << self.shift)
+    }
+
+    /// The cells of a run.
+    pub fn cells_of(self, run: usize) -> Range<usize> {
+        let end = (run + 1) << self.shift;
+        run << self.shift..end.min(self.count)
+    }
+
+    /// The run of a cell.
+    pub fn run_of(self, cell: usize) -> usize {
+        cell >> self.shift
+    }
+
+    /// The cells of each run.
+    fn all(self) -> impl Iterator<Item = Range<usize>> {
+        (0..self.runs()).map(move |run| self.cells_of(run))
+    }
+
+    /// The guides of the distributions of each run.
+    fn guides(self, ends: &[u32]) -> Vec<u32> {
+        let length = guide_length(1 << self.shift);
+        let mut guides = vec![0; length * self.runs()];
+        for (guide_of, cells) in guides.chunks_mut(length).zip(self.all()) {
+            guide(&ends[cells], guide_of);
+        }
+        guides
+    }
+}
 
 /// The cells of an environment, and what its words in [`super::EnvironmentTable::cdf`] are. One after the other:
 ///
@@ -25,123 +83,90 @@ const BLOCK_ROWS: usize = 16;
 /// A distribution is the lower ends of its intervals, in 2⁻³¹.
 #[derive(Debug, Clone, Copy)]
 pub struct Grid {
-    /// Columns of cells.
-    pub width: usize,
-    /// Rows of cells.
-    pub rows: usize,
+    /// Columns of cells, in runs as long as a block.
+    pub columns: Axis,
+    /// Rows of cells, in runs as long as a block.
+    pub rows: Axis,
 }
 
 impl Grid {
     pub fn new(image: &EnvironmentImage) -> Self {
-        let (width, rows) = (image.width, image.height + 1);
-        Self { width, rows }
+        Self {
+            columns: Axis::blocks(image.width, image.width, BLOCK_COLUMNS),
+            rows: Axis::blocks(image.height + 1, image.height, BLOCK_ROWS),
+        }
     }
 
-    pub fn block_columns(self) -> usize {
-        BLOCK_COLUMNS.min(self.width)
+    pub fn blocks(self) -> usize {
+        self.columns.runs() * self.rows.runs()
     }
 
-    pub fn block_rows(self) -> usize {
-        BLOCK_ROWS.min(self.rows)
-    }
-
-    pub fn columns_of(self, block: usize) -> Range<usize> {
-        span(block, self.block_columns(), self.width)
-    }
-
-    pub fn rows_of(self, block: usize) -> Range<usize> {
-        span(block, self.block_rows(), self.rows)
-    }
-
-    fn first_row_end(self) -> usize {
-        self.width * self.rows
-    }
-
-    /// Values of a guide to the cells, and to the rows, of a block.
-    fn guide_lengths(self) -> (usize, usize) {
-        let cells = guide_length(self.width.div_ceil(self.block_columns()));
-        (cells, guide_length(self.rows.div_ceil(self.block_rows())))
+    /// Words of a normal's table.
+    pub fn table_length(self) -> usize {
+        self.rows.runs() + 2 * self.blocks()
     }
 
     /// Probability of a row of cells, once one of the blocks that it meets is chosen; 0 if that never is.
     pub fn row_probability(self, cdf: &[u32], block_column: usize, row: usize) -> f64 {
-        // The last row at which a block begins, as cells are given to blocks by the device.
-        let block = ((row + 1) * self.block_rows() - 1) / self.rows;
-        let (rows, columns) = (self.rows_of(block), self.block_columns());
-        let chances = &cdf[cdf.len() - columns * self.block_rows()..];
-        if chances[block * columns + block_column] == 0 {
+        let block = self.rows.run_of(row);
+        let chances = &cdf[cdf.len() - self.blocks()..];
+        if chances[block * self.columns.runs() + block_column] == 0 {
             return 0.0;
         }
-        let first = rows.start;
-        let ends = &cdf[self.first_row_end() + block_column * self.rows..][rows];
-        probabilities(ends).nth(row - first).unwrap_or(0.0)
+        let rows = self.rows.cells_of(block);
+        let first = self.columns.count * self.rows.count + block_column * self.rows.count;
+        let ends = &cdf[first..][rows.clone()];
+        probabilities(ends).nth(row - rows.start).unwrap_or(0.0)
     }
-}
-
-/// The part that one of several has of a count.
-pub fn span(part: usize, parts: usize, count: usize) -> Range<usize> {
-    part * count / parts..(part + 1) * count / parts
 }
 
 /// The words of [`Grid`]; none if no texel sheds light.
 pub fn distribution(image: &EnvironmentImage) -> Vec<u32> {
     let grid = Grid::new(image);
-    let mut cells = vec![0; grid.width * grid.rows];
-    // For each row, the weights of parts of blocks.
-    let parts: Vec<Vec<f64>> = cells
-        .par_chunks_mut(grid.width)
+    let mut cells = vec![0; grid.columns.count * grid.rows.count];
+    // For each row, the weights of the halves of its blocks.
+    let halves: Vec<Vec<f64>> = cells
+        .par_chunks_mut(grid.columns.count)
         .enumerate()
         .map(|(row, ends)| row_distribution(grid, &row_weights(image, row), ends))
         .collect();
-    if parts.iter().flatten().all(|weight| *weight == 0.0) {
+    if halves.iter().flatten().all(|weight| *weight == 0.0) {
         return Vec::new();
     }
-    let rows = rows_distribution(grid, &parts);
-    let (of_cells, of_rows) = grid.guide_lengths();
-    let cell_chunks = |row: &[u32]| -> Vec<u32> {
-        let blocks = (0..grid.block_columns()).map(|b| grid.columns_of(b));
-        blocks.flat_map(|b| guide_of(&row[b], of_cells)).collect()
-    };
-    let cell_guides: Vec<u32> = cells.par_chunks(grid.width).flat_map(cell_chunks).collect();
-    let row_guides = rows.chunks(grid.rows).flat_map(|column| {
-        let blocks = (0..grid.block_rows()).map(|b| grid.rows_of(b));
-        blocks
-            .flat_map(|b| guide_of(&column[b], of_rows))
-            .collect::<Vec<u32>>()
-    });
-    let row_guides: Vec<u32> = row_guides.collect();
-    let tables = normals::tables(grid, &parts);
+    let rows: Vec<u32> = (0..grid.columns.runs())
+        .flat_map(|block_column| rows_distribution(grid, block_column, &halves))
+        .collect();
+    let each_row = cells.par_chunks(grid.columns.count);
+    let cell_guides: Vec<u32> = each_row
+        .flat_map_iter(|ends| grid.columns.guides(ends))
+        .collect();
+    let each_column = rows.chunks(grid.rows.count);
+    let row_guides: Vec<u32> = each_column
+        .flat_map(|ends| grid.rows.guides(ends))
+        .collect();
+    let tables = normals::tables(grid, &halves);
     [cells, rows, cell_guides, row_guides, tables].concat()
 }
 
-fn guide_of(ends: &[u32], length: usize) -> Vec<u32> {
-    let mut values = vec![0; length];
-    guide(ends, &mut values);
-    values
-}
-
 fn row_distribution(grid: Grid, weights: &[f64], ends: &mut [u32]) -> Vec<f64> {
-    for block in 0..grid.block_columns() {
-        let columns = grid.columns_of(block);
-        fixed_point_cdf(&weights[columns.clone()], &mut ends[columns]);
+    for cells in grid.columns.all() {
+        fixed_point_cdf(&weights[cells.clone()], &mut ends[cells]);
     }
-    let parts = SUBDIVISION * grid.block_columns();
-    let sum = |part| weights[span(part, parts, grid.width)].iter().sum();
-    (0..parts).map(sum).collect()
+    let halves = grid.columns.halves().all();
+    halves.map(|cells| weights[cells].iter().sum()).collect()
 }
 
-fn rows_distribution(grid: Grid, parts: &[Vec<f64>]) -> Vec<u32> {
-    let mut ends = vec![0; grid.block_columns() * grid.rows];
-    for (column, ends) in ends.chunks_mut(grid.rows).enumerate() {
-        let parts_of = SUBDIVISION * column..SUBDIVISION * (column + 1);
-        let weights: Vec<f64> = parts
-            .iter()
-            .map(|row| row[parts_of.clone()].iter().sum())
-            .collect();
-        for block in 0..grid.block_rows() {
-            let rows = grid.rows_of(block);
-            fixed_point_cdf(&weights[rows.clone()], &mut ends[rows]);
-        }
+fn rows_distribution(grid: Grid, block_column: usize, halves: &[Vec<f64>]) -> Vec<u32> {
+    let cells = grid.columns.cells_of(block_column);
+    let of_halves = grid.columns.halves();
+    let of_block = of_halves.run_of(cells.start)..=of_halves.run_of(cells.end - 1);
+    let weights: Vec<f64> = halves
+        .iter()
+        .map(|row| row[of_block.clone()].iter().sum())
+        .collect();
+    let mut ends = vec![0; weights.len()];
+    for rows in grid.rows.all() {
+        fixed_point_cdf(&weights[rows.clone()], &mut ends[rows]);
     }
     ends
 }

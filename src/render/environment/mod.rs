@@ -92,12 +92,12 @@ fn texels(image: &EnvironmentImage, cdf: &[u32]) -> Vec<[f32; 4]> {
             for (texel, [r, g, b]) in texels.iter_mut().zip(&image.texels[y * width..]) {
                 *texel = [*r, *g, *b, 0.0];
             }
-            if row < grid.rows && !cdf.is_empty() {
+            if row < grid.rows.count && !cdf.is_empty() {
                 let (a, b) = row_span(row, height);
                 let area = (b - a) / (width as f64 * height as f64);
-                for block in 0..grid.block_columns() {
+                for block in 0..grid.columns.runs() {
                     let p = grid.row_probability(cdf, block, row);
-                    let columns = grid.columns_of(block);
+                    let columns = grid.columns.cells_of(block);
                     let cells = &cdf[row * width..][columns.clone()];
                     // The columns of a row that is never chosen mean nothing.
                     for (texel, q) in texels[columns].iter_mut().zip(probabilities(cells)) {
@@ -145,24 +145,23 @@ mod tests {
     /// Integral of the density, for the normals of each table, over the unit square.
     fn integrals(table: &EnvironmentTable, image: &EnvironmentImage) -> Vec<f64> {
         let grid = Grid::new(image);
-        let (columns, rows) = (grid.block_columns(), grid.block_rows());
-        let mut of_blocks = vec![0.0; columns * rows];
-        for block_row in 0..rows {
-            for row in grid.rows_of(block_row) {
-                let (a, b) = row_span(row, image.height);
-                for column in 0..columns {
-                    let cells = &table.texels[row * grid.width..][grid.columns_of(column)];
-                    let densities = cells.iter().map(|t| f64::from(t[3]));
-                    of_blocks[block_row * columns + column] += densities.sum::<f64>() * (b - a);
-                }
+        let columns = grid.columns.runs();
+        let mut of_blocks = vec![0.0; grid.blocks()];
+        for row in 0..grid.rows.count {
+            let (a, b) = row_span(row, image.height);
+            for column in 0..columns {
+                let cells = &table.texels[row * image.width..][grid.columns.cells_of(column)];
+                let densities = cells.iter().map(|t| f64::from(t[3]));
+                let block = grid.rows.run_of(row) * columns + column;
+                of_blocks[block] += densities.sum::<f64>() * (b - a);
             }
         }
         let area = 2.0 * PI * PI / (image.width * image.height) as f64;
-        let length = rows + 2 * columns * rows;
+        let length = grid.table_length();
         let tables = &table.cdf[table.cdf.len() - length * normals::TABLES..];
         let chance = |word: &u32| f64::from(f32::from_bits(*word)) * area;
         let integral = |table: &[u32]| {
-            let chances = table[rows + columns * rows..].iter().map(chance);
+            let chances = table[length - grid.blocks()..].iter().map(chance);
             chances.zip(&of_blocks).map(|(p, d)| p * d).sum()
         };
         tables.chunks(length).map(integral).collect()

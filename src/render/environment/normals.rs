@@ -7,7 +7,7 @@ use std::ops::Range;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::distribution::{Grid, span};
+use super::distribution::Grid;
 use super::row_span;
 use crate::render::cdf::{fixed_point_cdf, probabilities};
 
@@ -15,11 +15,8 @@ use crate::render::cdf::{fixed_point_cdf, probabilities};
 const NORMALS: usize = 16;
 /// A table for each, and one for what receives light from all sides.
 pub const TABLES: usize = NORMALS * NORMALS + 1;
-/// Parts of a block along each side, of which each has its own cosine.
-pub const SUBDIVISION: usize = 2;
-
-/// Part of a block: what it sheds, and where it is.
-struct Part {
+/// A quarter of a block: what it sheds, and where it is.
+struct Quarter {
     block: usize,
     weight: f64,
     direction: DVec3,
@@ -27,56 +24,42 @@ struct Part {
     radius: f64,
 }
 
-/// The tables of [`Grid`], given the weights of the parts of blocks in each row of cells.
-pub fn tables(grid: Grid, weights: &[Vec<f64>]) -> Vec<u32> {
-    let parts = parts(grid, weights);
+/// The tables of [`Grid`], given the weights of the halves of blocks in each row of cells.
+pub fn tables(grid: Grid, halves: &[Vec<f64>]) -> Vec<u32> {
+    let quarters = quarters(grid, halves);
     let normal = |index: usize| (index + 1 < TABLES).then(|| normal_of(index));
     let tables = (0..TABLES).into_par_iter();
     tables
-        .flat_map(|index| table(grid, &parts, normal(index)))
+        .flat_map_iter(|index| table(grid, &quarters, normal(index)))
         .collect()
 }
 
-fn parts(grid: Grid, weights: &[Vec<f64>]) -> Vec<Part> {
-    let columns = SUBDIVISION * grid.block_columns();
-    let rows = SUBDIVISION * grid.block_rows();
-    let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
-    let part = |(column, row)| {
-        let cells = span(row, rows, grid.rows);
-        let weight: f64 = weights[cells.clone()].iter().map(|r| r[column]).sum();
-        let block = row / SUBDIVISION * grid.block_columns() + column / SUBDIVISION;
-        (weight > 0.0).then(|| {
-            Part::new(
-                grid,
-                block,
-                weight,
-                span(column, columns, grid.width),
-                cells,
-            )
-        })
+fn quarters(grid: Grid, halves: &[Vec<f64>]) -> Vec<Quarter> {
+    let (columns, rows) = (grid.columns.halves(), grid.rows.halves());
+    let places =
+        (0..rows.runs()).flat_map(|row| (0..columns.runs()).map(move |column| (column, row)));
+    let quarter = |(column, row)| {
+        let cells = rows.cells_of(row);
+        let weight: f64 = halves[cells.clone()].iter().map(|r| r[column]).sum();
+        (weight > 0.0).then(|| Quarter::new(grid, columns.cells_of(column), cells, weight))
     };
-    places.filter_map(part).collect()
+    places.filter_map(quarter).collect()
 }
 
-impl Part {
-    fn new(
-        grid: Grid,
-        block: usize,
-        weight: f64,
-        columns: Range<usize>,
-        rows: Range<usize>,
-    ) -> Self {
-        let (width, height) = (grid.width as f64, grid.rows - 1);
-        let v = [
+impl Quarter {
+    fn new(grid: Grid, columns: Range<usize>, rows: Range<usize>, weight: f64) -> Self {
+        let block_row = grid.rows.run_of(rows.start);
+        let (width, height) = (grid.columns.count as f64, grid.rows.count - 1);
+        let ends = [
             row_span(rows.start, height).0,
             row_span(rows.end - 1, height).1,
-        ]
-        .map(|row| row / height as f64);
+        ];
+        let v = ends.map(|row| row / height as f64);
         let u = [columns.start, columns.end].map(|column| (column as f64 + 0.5) / width);
         // A parallel is nowhere longer than the equator.
         let half = DVec2::new(PI * (u[1] - u[0]), 0.5 * PI * (v[1] - v[0]));
         Self {
-            block,
+            block: block_row * grid.columns.runs() + grid.columns.run_of(columns.start),
             weight,
             direction: direction(0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1])),
             radius: 2.0 * (0.5 * half.length().min(PI)).sin(),
@@ -115,18 +98,18 @@ fn octahedral(p: DVec2) -> DVec3 {
     DVec3::new(p.x - below.copysign(p.x), p.y - below.copysign(p.y), z).normalize()
 }
 
-fn table(grid: Grid, parts: &[Part], normal: Option<(DVec3, f64)>) -> Vec<u32> {
-    let (columns, rows) = (grid.block_columns(), grid.block_rows());
-    let mut weights = vec![0.0; columns * rows];
-    for part in parts {
+fn table(grid: Grid, quarters: &[Quarter], normal: Option<(DVec3, f64)>) -> Vec<u32> {
+    let columns = grid.columns.runs();
+    let mut weights = vec![0.0; grid.blocks()];
+    for quarter in quarters {
         let cosine = normal.map_or(1.0, |(n, radius)| {
-            mean_cosine(n.dot(part.direction), part.radius + radius)
+            mean_cosine(n.dot(quarter.direction), quarter.radius + radius)
         });
-        weights[part.block] += part.weight * cosine;
+        weights[quarter.block] += quarter.weight * cosine;
     }
-    let mut table = vec![0; rows + 2 * columns * rows];
-    let (of_rows, rest) = table.split_at_mut(rows);
-    let (of_blocks, chances) = rest.split_at_mut(columns * rows);
+    let mut table = vec![0; grid.table_length()];
+    let (of_rows, rest) = table.split_at_mut(grid.rows.runs());
+    let (of_blocks, chances) = rest.split_at_mut(grid.blocks());
     let sums: Vec<f64> = weights
         .chunks(columns)
         .zip(of_blocks.chunks_mut(columns))
