@@ -8,8 +8,8 @@
 override ROULETTE_DEPTH: u32 = 5u;
 override ROULETTE_MAX_SURVIVAL: f32 = 0.95;
 
-// How many samples one of an environment's picture counts for against one of the BSDF: it is the better spread, of what
-// both find well (docs/kernel.md).
+// How many samples one of an environment's picture counts for, against one of the BSDF, where all of that is diffuse: it is
+// chosen by light and cosine together, so it is mostly the better one (docs/kernel.md).
 override ENVIRONMENT_SAMPLES: f32 = 2.0;
 
 // Pairs of random numbers that a vertex may use, so that one that uses fewer shifts no other's.
@@ -24,6 +24,8 @@ struct LastBounce {
     alone: bool,
     // Whether light on either side could have been sampled.
     both_sides: bool,
+    // What a sample of an environment's picture counts for.
+    environment_samples: f32,
 }
 
 // A path under way. An integrator that includes this file says which techniques find lights with a
@@ -51,7 +53,7 @@ struct Path {
 
 // A path along a ray from the camera.
 fn path_begin(camera_ray: Ray, sampler: ptr<function, Sampler>) -> Path {
-    let last = LastBounce(vec3f(0.0), vec3f(0.0), 0.0, true, false);
+    let last = LastBounce(vec3f(0.0), vec3f(0.0), 0.0, true, false, 1.0);
     return Path(vec3f(0.0), 0u, vec3f(1.0), (*sampler).dimension, camera_ray, last, vec3f(0.0), 0u, camera_ray, frame.media, 0.0);
 }
 
@@ -140,8 +142,14 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
         (*path).media = crossing.media;
     }
     (*path).beta = beta * sample.weight * roulette((*path).depth, beta * sample.weight, choice.y);
-    (*path).last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta, both_sides);
+    let counts = environment_samples(bsdf);
+    (*path).last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta, both_sides, counts);
     (*path).ray = spawn_ray(surface, wi);
+}
+
+// What a sample of the environment counts for at a surface, in multiple importance sampling.
+fn environment_samples(bsdf: Bsdf) -> f32 {
+    return select(1.0, mix(1.0, ENVIRONMENT_SAMPLES, p_diffuse(bsdf)), HAS_ENVIRONMENT_IMAGE);
 }
 
 // Whether a local direction is on the side of the shading normal on which it is of the triangle's, to which
@@ -189,7 +197,7 @@ fn sample_direct(
     }
     var contribution = bsdf_eval(bsdf, wo, wi) * light.weight * transmittance_to(s, (*path).media, crossing, light, wi);
     if (!light.delta && BSDF_SAMPLES) {
-        let samples = select(1.0, ENVIRONMENT_SAMPLES, HAS_ENVIRONMENT_IMAGE && light.at_infinity);
+        let samples = select(1.0, environment_samples(bsdf), light.at_infinity);
         contribution *= power_heuristic(samples * light.pdf, bsdf_pdf(bsdf, wo, wi));
     }
     (*path).light = beta * contribution;
@@ -220,6 +228,5 @@ fn environment_hit_weight(pdf: f32, last: LastBounce) -> f32 {
         return 0.0;
     }
     let choice = lights[frame.environment_light].probability;
-    let samples = select(1.0, ENVIRONMENT_SAMPLES, HAS_ENVIRONMENT_IMAGE);
-    return power_heuristic(last.pdf, samples * choice * pdf);
+    return power_heuristic(last.pdf, last.environment_samples * choice * pdf);
 }
