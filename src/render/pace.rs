@@ -15,7 +15,10 @@ const MAX_GROWN_PASS: u64 = 32;
 /// Wall time that one submission should take: short enough for any watchdog and for Ctrl-C.
 const PIECE: Duration = Duration::from_millis(100);
 /// Wall time after which all pixels should have got their next samples.
-const PASS: Duration = Duration::from_millis(500);
+const PASS: Duration = Duration::from_secs(2);
+
+/// Tiles of a piece as long as nothing has been timed.
+const FIRST_TILES: u32 = 16;
 
 /// How far a render is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +50,8 @@ pub struct Pace {
     elapsed: Duration,
     /// Samples per second of the last pieces, smoothed.
     rate: f64,
+    /// Samples of the trial, until the pass that they belong to begins.
+    tried: u64,
 }
 
 impl Pace {
@@ -63,7 +68,21 @@ impl Pace {
             samples_done: 0,
             elapsed: Duration::ZERO,
             rate: 0.0,
+            tried: 0,
         }
+    }
+
+    /// Work items of a piece of one sample each that is timed before the first pass is planned: 0 if there is no need.
+    pub fn trial_items(&self) -> u32 {
+        let is_open =
+            self.rate == 0.0 && self.pass_samples.is_none() && self.spp - self.spp_done > 1;
+        if is_open { FIRST_TILES * TILE_LANES } else { 0 }
+    }
+
+    /// Notes how long so many samples took, which the first piece of the pass will count once more.
+    pub fn account_trial(&mut self, drawn: u64, time: Duration) {
+        self.account(drawn, time);
+        self.tried = drawn;
     }
 
     /// Samples a pixel in the next pass over the picture.
@@ -72,10 +91,16 @@ impl Pace {
         // A small picture is a single piece.
         let pieces = (pixels / f64::from(16 * TILE_LANES)).clamp(1.0, PASS.div_duration_f64(PIECE));
         let fitting = (self.rate * PIECE.as_secs_f64() * pieces / pixels) as u64;
-        // Lanes that go from sample to sample keep each other busy, so passes grow with what is done: 1, 3, 12, 32.
-        let growing = fitting.max((3 * self.spp_done).min(MAX_GROWN_PASS));
-        let fitting = self.pass_samples.unwrap_or(growing);
-        fitting.clamp(1, self.spp - self.spp_done)
+        // Lanes that go from sample to sample keep each other busy, so passes grow with what is done: 1, 7, 32.
+        let growing = fitting.max((7 * self.spp_done).min(MAX_GROWN_PASS));
+        let missing = self.spp - self.spp_done;
+        // A short last pass costs more than it is worth.
+        let planned = if missing <= 2 * growing {
+            missing
+        } else {
+            growing
+        };
+        self.pass_samples.unwrap_or(planned).clamp(1, missing)
     }
 
     /// Work items in the next piece, each of `samples` samples.
@@ -84,7 +109,7 @@ impl Pace {
         let tiles = match self.piece_tiles {
             Some(tiles) => u64::from(tiles.max(1)),
             // A first guess, until the first piece has been timed.
-            None if self.rate == 0.0 => 16,
+            None if self.rate == 0.0 => u64::from(FIRST_TILES),
             None => (fitting as u64 / u64::from(TILE_LANES)).max(2),
         };
         (tiles * u64::from(TILE_LANES))
@@ -94,7 +119,7 @@ impl Pace {
 
     /// Notes that so many samples, over all pixels, were drawn in this wall time.
     pub fn account(&mut self, drawn: u64, time: Duration) {
-        self.samples_done += drawn;
+        self.samples_done += drawn.saturating_sub(std::mem::take(&mut self.tried));
         self.elapsed += time;
         let rate = drawn as f64 / time.as_secs_f64().max(1e-9);
         self.rate = if self.rate == 0.0 {

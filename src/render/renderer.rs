@@ -166,6 +166,9 @@ impl<'a> Renderer<'a> {
         &mut self,
         on_progress: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<()>, RenderError> {
+        if self.try_out(on_progress)?.is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
         while self.pace.spp_done < self.settings.spp {
             let target = self.pace.spp_done + self.pace.pass_samples();
             for band in 0..self.bands.len() {
@@ -176,6 +179,26 @@ impl<'a> Renderer<'a> {
             self.pace.spp_done = target;
         }
         Ok(ControlFlow::Continue(()))
+    }
+
+    /// Draws the first samples of a few tiles, to know how many a pass may have.
+    fn try_out(
+        &mut self,
+        on_progress: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, RenderError> {
+        let tiles = self
+            .bands
+            .first()
+            .map_or(0, |first| first.band.tile_count());
+        let items = self.pace.trial_items().min(tiles * TILE_LANES);
+        if items == 0 {
+            return Ok(ControlFlow::Continue(()));
+        }
+        let start = Instant::now();
+        self.run_piece(0, 0, items, self.pace.spp_done + 1)?;
+        let pixels = self.bands[0].band.pixels_in(0, items);
+        self.pace.account_trial(pixels, start.elapsed());
+        Ok(on_progress(self, &self.progress()))
     }
 
     fn render_band(
