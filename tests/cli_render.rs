@@ -1,4 +1,4 @@
-//! `etendue render`: pictures, layers, metadata and the report.
+//! `etendue render`: pictures, layers and metadata.
 
 mod cli_support;
 
@@ -74,95 +74,6 @@ fn pictures_have_the_size_layers_and_metadata_that_were_asked_for() {
 
     let png = image::open(&png_path).expect("a readable PNG");
     assert_eq!((png.width(), png.height()), (16, 12));
-}
-
-#[test]
-fn the_report_has_every_field() {
-    let folder = folder();
-    let output = path_in(&folder, "a.exr");
-    let run = render(&["-o", &output, "--json", "-", "--stats"]).ends_with(0);
-    let report = run.json();
-    for key in ["load", "accel", "compile", "render", "write", "total"] {
-        assert!(
-            report["seconds"][key].as_f64() >= Some(0.0),
-            "seconds.{key}"
-        );
-    }
-    for key in [
-        "scene",
-        "device",
-        "driver",
-        "version",
-        "integrator",
-        "sampler",
-        "scene_hash",
-    ] {
-        assert!(report[key].is_string(), "{key}");
-    }
-    for key in [
-        "paths_per_second",
-        "rays_per_second",
-        "triangles",
-        "device_bytes",
-    ] {
-        assert!(report[key].as_f64() > Some(0.0), "{key}");
-    }
-    assert_eq!(report["width"], 16);
-    assert_eq!(report["height"], 12);
-    assert_eq!(report["spp"].as_u64(), Some(4));
-    assert_eq!(report["seed"], 0);
-    assert_eq!(report["max_depth"], 8);
-    assert_eq!(report["non_finite_samples"], 0);
-    assert_eq!(report["interrupted"], false);
-    assert_eq!(report["warnings"], Value::Array(Vec::new()));
-    assert_eq!(report["outputs"][0], output.as_str());
-    assert!(report["rays"]["closest"].as_u64() >= Some(16 * 12 * 4));
-    assert!(report["rays"]["any"].as_u64() > Some(0));
-    check_list_counts(&report);
-    assert!(report["mean_radiance"][2].as_f64() > Some(0.0));
-    assert!(report["relative_error"].as_f64() > Some(0.0));
-}
-
-/// A list: closest-hit rays test all pairs of the scene, shadow rays those between the walls, of which there are 10.
-fn check_list_counts(report: &Value) {
-    let number = |value: &Value| value.as_f64().expect("a number");
-    let rays = &report["rays"];
-    assert_eq!(rays["nodes_per_ray"], 0.0);
-    let (closest, any) = (number(&rays["closest"]), number(&rays["any"]));
-    let pairs = number(&report["bvh"]["bytes"]) / 64.0;
-    let shadow_pairs = number(&rays["pairs_per_ray"]) * (closest + any) - pairs * closest;
-    assert!((shadow_pairs / any - 10.0).abs() < 1e-6, "{rays}");
-}
-
-#[test]
-fn the_report_tells_what_instances_share() {
-    let instances = |mode: &str| {
-        let arguments = ["--instancing", mode, "--spp", "1", "--json", "-"];
-        let report = render_scene("scenes/foliage.gltf", &arguments)
-            .ends_with(0)
-            .json();
-        report["bvh"]["instancing"]["instances"].as_u64()
-    };
-    assert_eq!(instances("auto"), Some(0));
-    assert_eq!(instances("never"), Some(0));
-    assert!(instances("always") > Some(0));
-}
-
-#[test]
-fn a_report_alone_goes_to_a_file_and_leaves_out_what_was_not_counted() {
-    let folder = folder();
-    let path = path_in(&folder, "report.json");
-    let run = render(&["--json", &path, "--spp", "1", "--max-depth", "1"]).ends_with(0);
-    assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("", ""));
-    let text = std::fs::read_to_string(path).expect("the report");
-    let report: Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(report.get("rays"), None);
-    assert_eq!(
-        report["relative_error"],
-        Value::Null,
-        "one sample has no variance"
-    );
-    assert_eq!(report["max_depth"], 1);
 }
 
 #[test]

@@ -93,24 +93,28 @@ fn texels(image: &EnvironmentImage, cdf: &[u32]) -> Vec<[f32; 4]> {
                 *texel = [*r, *g, *b, 0.0];
             }
             if row < grid.rows.count && !cdf.is_empty() {
-                let (a, b) = row_span(row, height);
-                let area = (b - a) / (width as f64 * height as f64);
-                for block in 0..grid.columns.runs() {
-                    let p = grid.row_probability(cdf, block, row);
-                    let columns = grid.columns.cells_of(block);
-                    let cells = &cdf[row * width..][columns.clone()];
-                    // The columns of a row that is never chosen mean nothing.
-                    for (texel, q) in texels[columns].iter_mut().zip(probabilities(cells)) {
-                        texel[3] = if p > 0.0 {
-                            (p * q / (area * 2.0 * PI * PI)) as f32
-                        } else {
-                            0.0
-                        };
-                    }
-                }
+                write_densities(grid, cdf, row, texels);
             }
         });
     texels
+}
+
+/// Of the cells of a row.
+fn write_densities(grid: Grid, cdf: &[u32], row: usize, texels: &mut [[f32; 4]]) {
+    let (width, height) = (grid.columns.count, grid.rows.count - 1);
+    let (a, b) = row_span(row, height);
+    let area = (b - a) / (width as f64 * height as f64);
+    for block in 0..grid.columns.runs() {
+        let p = grid.row_probability(cdf, block, row);
+        // The columns of a row that is never chosen mean nothing.
+        if p > 0.0 {
+            let columns = grid.columns.cells_of(block);
+            let cells = &cdf[row * width..][columns.clone()];
+            for (texel, q) in texels[columns].iter_mut().zip(probabilities(cells)) {
+                texel[3] = (p * q / (area * 2.0 * PI * PI)) as f32;
+            }
+        }
+    }
 }
 
 fn mean_radiance(image: &EnvironmentImage) -> DVec3 {

@@ -15,6 +15,7 @@ use crate::render::cdf::{fixed_point_cdf, probabilities};
 const NORMALS: usize = 16;
 /// A table for each, and one for what receives light from all sides.
 pub const TABLES: usize = NORMALS * NORMALS + 1;
+
 /// A quarter of a block: what it sheds, and where it is.
 struct Quarter {
     block: usize,
@@ -115,16 +116,13 @@ fn table(grid: Grid, quarters: &[Quarter], normal: Option<(DVec3, f64)>) -> Vec<
         .zip(of_blocks.chunks_mut(columns))
         .map(|(weights, ends)| fixed_point_cdf(weights, ends))
         .collect();
-    if fixed_point_cdf(&sums, of_rows) > 0.0 {
-        let each = of_blocks
-            .chunks(columns)
-            .zip(chances.chunks_mut(columns))
-            .zip(&sums);
-        for (p, ((ends, chances), _)) in probabilities(of_rows)
-            .zip(each)
-            .filter(|(_, (_, sum))| **sum > 0.0)
-        {
-            for (chance, q) in chances.iter_mut().zip(probabilities(ends)) {
+    fixed_point_cdf(&sums, of_rows);
+    for (row, p) in probabilities(of_rows).enumerate() {
+        // The blocks of a row that is never chosen mean nothing.
+        if sums[row] > 0.0 {
+            let blocks = row * columns..(row + 1) * columns;
+            let of_row = probabilities(&of_blocks[blocks.clone()]);
+            for (chance, q) in chances[blocks].iter_mut().zip(of_row) {
                 *chance = ((p * q) as f32).to_bits();
             }
         }
