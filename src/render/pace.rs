@@ -8,8 +8,8 @@ use crate::gpu::DeviceInfo;
 /// Lanes of a tile and of a workgroup.
 pub const TILE_LANES: u32 = 64;
 
-/// Samples a pixel in a pass that takes longer than [`PASS`], at most: the pixels of a picture that is
-/// stopped in between differ by so many samples.
+/// Samples a pixel in a pass that takes longer than [`PASS`], at most, or half of it in the last: the pixels of a
+/// picture that is stopped in between differ by so many samples.
 const MAX_GROWN_PASS: u64 = 32;
 
 /// Wall time that one submission should take: short enough for any watchdog and for Ctrl-C.
