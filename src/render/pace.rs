@@ -50,7 +50,7 @@ pub struct Pace {
     elapsed: Duration,
     /// Samples per second of the last pieces, smoothed.
     rate: f64,
-    /// Samples of the trial, until the pass that they belong to begins.
+    /// Samples of the trial that the first pass has yet to count again.
     tried: u64,
 }
 
@@ -79,7 +79,7 @@ impl Pace {
         if is_open { FIRST_TILES * TILE_LANES } else { 0 }
     }
 
-    /// Notes how long so many samples took, which the first piece of the pass will count once more.
+    /// Notes how long so many samples took, which the first pass will count once more.
     pub fn account_trial(&mut self, drawn: u64, time: Duration) {
         self.account(drawn, time);
         self.tried = drawn;
@@ -119,7 +119,9 @@ impl Pace {
 
     /// Notes that so many samples, over all pixels, were drawn in this wall time.
     pub fn account(&mut self, drawn: u64, time: Duration) {
-        self.samples_done += drawn.saturating_sub(std::mem::take(&mut self.tried));
+        let again = self.tried.min(drawn);
+        self.tried -= again;
+        self.samples_done += drawn - again;
         self.elapsed += time;
         let rate = drawn as f64 / time.as_secs_f64().max(1e-9);
         self.rate = if self.rate == 0.0 {
@@ -138,5 +140,34 @@ impl Pace {
             elapsed: self.elapsed,
             paths_per_second: self.samples_done as f64 / self.elapsed.as_secs_f64().max(1e-9),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// However small the pieces that follow it, the trial's samples are counted once.
+    #[test]
+    fn a_trial_is_counted_once() {
+        let mut pace = Pace {
+            pixels: 1000,
+            spp: 2,
+            pass_samples: None,
+            piece_tiles: None,
+            most_items: u64::MAX,
+            spp_done: 0,
+            samples_done: 0,
+            elapsed: Duration::ZERO,
+            rate: 0.0,
+            tried: 0,
+        };
+        pace.account_trial(600, Duration::from_secs(1));
+        assert_eq!(pace.progress().samples_done, 600);
+        for _ in 0..20 {
+            pace.account(100, Duration::from_secs(1));
+        }
+        assert_eq!(pace.progress().samples_done, 2000);
+        assert_eq!(pace.progress().samples_total, 2000);
     }
 }
