@@ -9,7 +9,8 @@ struct EnvironmentLight {
     pdf: f32,
 }
 
-// What comes from `direction` to a surface with this shading normal, on its side or on both.
+// What comes from `direction` to a surface with this shading normal, on its side or on both. Without the density of a
+// picture's samples if it is `alone`, for then none of them competes.
 fn environment_light(normal: vec3f, both_sides: bool, direction: vec3f, alone: bool) -> EnvironmentLight {
     if (!HAS_ENVIRONMENT_IMAGE) {
         return EnvironmentLight(frame.environment_radiance, pdf_cosine_hemisphere(dot(direction, normal)));

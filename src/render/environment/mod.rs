@@ -7,6 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::cdf::probabilities;
+use super::emission::luminance;
 use crate::scene::EnvironmentImage;
 use distribution::{Grid, distribution};
 
@@ -48,10 +49,6 @@ impl EnvironmentTable {
     }
 }
 
-fn luminance([r, g, b]: [f32; 3]) -> f64 {
-    0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
-}
-
 /// Sine of the polar angle in the middle of a row, to which the solid angle of its texels is proportional.
 fn sin_theta(row: usize, height: usize) -> f64 {
     (PI * (row as f64 + 0.5) / height as f64).sin()
@@ -66,7 +63,8 @@ fn row_span(row: usize, height: usize) -> (f64, f64) {
 fn row_weights(image: &EnvironmentImage, row: usize) -> Vec<f64> {
     let (width, height) = (image.width, image.height);
     let (above, below) = (row.saturating_sub(1), row.min(height - 1));
-    let at = |x: usize, y: usize| luminance(image.texels[y * width + x]);
+    let at =
+        |x: usize, y: usize| luminance(DVec3::from(image.texels[y * width + x].map(f64::from)));
     let means: Vec<f64> = (0..width)
         .map(|x| 0.5 * (at(x, above) + at(x, below)))
         .collect();
