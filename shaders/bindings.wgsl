@@ -19,3 +19,6 @@
 // Albedos of lobes (bsdf/albedo.wgsl) and wavelengths (medium.wgsl).
 @group(0) @binding(10) var<storage, read> bsdf_tables: array<f32>;
 @group(0) @binding(9) var<storage, read_write> element_counts: ElementCounts;
+// What guides paths, and what paths leave for that (guide.wgsl).
+@group(0) @binding(11) var<storage, read> guide: array<u32>;
+@group(0) @binding(12) var<storage, read_write> path_records: array<PathRecord>;

@@ -14,6 +14,7 @@
 #include "bsdf/sheen.wgsl"
 #include "bsdf/specular.wgsl"
 #include "bsdf/transmission.wgsl"
+#include "guide.wgsl"
 
 // Whether light that bounces between microfacets is put back. Without it a rough white metal reflects as
 // little as 0.31 of what arrives, as GGX in most renderers does.
@@ -84,14 +85,16 @@ struct Bsdf {
     p_coat: f32,
     p_sheen: f32,
     p_diffuse_transmission: f32,
+    // Where the diffuse lobe's directions preferably go, if HAS_GUIDE or RECORDS_PATHS.
+    guide: Guide,
 }
 
 struct BsdfSample {
     // Local direction, below the surface if it is transmitted; its z is 0 if there is none.
     wi: vec3f,
-    // f * |cos| / pdf.
+    // f * |cos| / density.
     weight: vec3f,
-    // Density over solid angle; of no meaning if delta.
+    // bsdf_pdf, the density over solid angle but for what a guide changes; of no meaning if delta.
     pdf: f32,
     // Whether wi is the only direction of its lobe.
     delta: bool,
@@ -236,6 +239,7 @@ fn no_bsdf_sample() -> BsdfSample {
 // Draw a direction: `u` moves it inside a lobe, `u_lobe` chooses the lobe.
 fn bsdf_sample(b: Bsdf, wo: vec3f, u: vec2f, u_lobe: f32) -> BsdfSample {
     var wi: vec3f;
+    var guided = 1.0;
     var below = b.p_specular;
     let in_specular = u_lobe < below;
     let in_transmission = !in_specular && u_lobe < below + b.p_transmission;
@@ -268,6 +272,10 @@ fn bsdf_sample(b: Bsdf, wo: vec3f, u: vec2f, u_lobe: f32) -> BsdfSample {
     } else if (HAS_DIFFUSE_TRANSMISSION && u_lobe < below + b.p_diffuse_transmission) {
         let up = diffuse_sample(u);
         wi = vec3f(up.xy, -up.z);
+    } else if (HAS_GUIDE || RECORDS_PATHS) {
+        let point = guided_point(b.guide, u);
+        wi = guided_cosine(b.guide, point.u);
+        guided = point.density;
     } else {
         wi = diffuse_sample(u);
     }
@@ -282,7 +290,12 @@ fn bsdf_sample(b: Bsdf, wo: vec3f, u: vec2f, u_lobe: f32) -> BsdfSample {
     if (wi.z == 0.0 || !(pdf > 0.0)) {
         return no_bsdf_sample();
     }
-    return BsdfSample(wi, bsdf_eval(b, wo, wi) / pdf, pdf, false);
+    return BsdfSample(wi, bsdf_eval(b, wo, wi) / (pdf * guided), pdf, false);
+}
+
+// Whether bsdf_sample draws from the diffuse lobe.
+fn draws_diffuse(b: Bsdf, u_lobe: f32) -> bool {
+    return u_lobe >= b.p_specular + b.p_transmission + b.p_coat + b.p_sheen + b.p_diffuse_transmission;
 }
 
 // Whether any light is scattered that does not keep to the direction of a mirror or of refraction.

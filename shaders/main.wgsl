@@ -17,6 +17,7 @@
 #include "steps.wgsl"
 #include "sampler.wgsl"
 #include "accel/stack.wgsl"
+#include "guide.wgsl"
 #include "integrator.wgsl"
 
 const TILE_SIZE: u32 = 8u;
@@ -37,6 +38,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
         return;
     }
     let index = (position.y - frame.first_row) * frame.width + position.x;
+    first_record = index * RECORDS_PER_PATH;
     var pixel = film[index];
     let count_before = pixel.count;
     var steps_before = steps;

@@ -72,12 +72,19 @@ fn path_step(path: ptr<function, Path>, answer: Answer, sampler: ptr<function, S
         (*path).L += (*path).light;
     }
     (*path).light = vec3f(0.0);
-    if (!is_going(*path)) {
-        return false;
+    if (RECORDS_PATHS && (*path).depth > 0u) {
+        record_gathered((*path).depth, luminance((*path).L));
     }
-    (*path).depth += 1u;
-    path_vertex(path, answer.hit, sampler);
-    return is_going(*path) || any((*path).light != vec3f(0.0));
+    var goes_on = is_going(*path);
+    if (goes_on) {
+        (*path).depth += 1u;
+        path_vertex(path, answer.hit, sampler);
+        goes_on = is_going(*path) || any((*path).light != vec3f(0.0));
+    }
+    if (RECORDS_PATHS && !goes_on) {
+        record_path((*path).depth, luminance((*path).L));
+    }
+    return goes_on;
 }
 
 // Whether there is a next edge.
@@ -91,6 +98,9 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
     var beta = (*path).beta;
     // Most ways out of here end the path.
     (*path).beta = vec3f(0.0);
+    if (RECORDS_PATHS) {
+        record_nothing((*path).depth);
+    }
     if (HAS_ABSORPTION) {
         beta *= medium_transmittance(medium_of((*path).media), hit.t * length(ray.direction));
     }
@@ -124,7 +134,10 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
         (*sampler).dimension = (*path).first_dimension + ((*path).depth - 1u) * DIMENSIONS_PER_VERTEX;
     }
     let wo = to_local(surface.shading, surface.wo);
-    let bsdf = bsdf_at(surface, wo, crossing);
+    var bsdf = bsdf_at(surface, wo, crossing);
+    if (HAS_GUIDE || RECORDS_PATHS) {
+        bsdf.guide = guide_at(surface.position, surface.shading);
+    }
     let both_sides = bsdf_has_smooth_transmission(bsdf);
     if (HAS_LIGHTS && bsdf_has_smooth_part(bsdf)) {
         sample_direct(path, beta, surface, crossing, bsdf, wo, sampler);
@@ -142,6 +155,9 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
         (*path).media = crossing.media;
     }
     (*path).beta = beta * sample.weight * roulette((*path).depth, beta * sample.weight, choice.y);
+    if (RECORDS_PATHS && draws_diffuse(bsdf, choice.x)) {
+        record_vertex((*path).depth, surface.position, surface.shading.z, u, luminance((*path).beta));
+    }
     let counts = environment_samples(bsdf);
     (*path).last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta, both_sides, counts);
     (*path).ray = spawn_ray(surface, wi);

@@ -264,6 +264,21 @@ struct PunctualLight {
     pad2: u32,
 }
 
+// What a vertex of a path of the training pass leaves, or (the first of its records) the path itself.
+struct PathRecord {
+    // Where the vertex is, metres from the camera.
+    position: vec3f,
+    // 64 x the direction of its normal + the square of its sample (guide.wgsl), or NONE; of the path the number
+    // of its vertices.
+    square: u32,
+    // Luminance of what light that is met from there on is multiplied by.
+    beta: f32,
+    // Luminance of what the path had gathered, the vertex's own light sample included; of the path all of it.
+    gathered: f32,
+    pad0: u32,
+    pad1: u32,
+}
+
 const NONE: u32 = 0xffffffffu;
 
 // A triangle's attributes: the index of its material, and above it these bits.

@@ -17,7 +17,8 @@ use glam::{DVec3, Vec3, Vec4};
 use scene_common::builder::Icosphere;
 use scene_common::statistics::{MAX_Z, compare_films};
 use scene_common::{
-    SceneBuilder, effort, lamp, load, render, square, with_integrator, without_roulette,
+    SceneBuilder, effort, lamp, load, render, render_guided, square, with_integrator,
+    without_roulette,
 };
 
 /// False alarms of a comparison's tiles together.
@@ -65,7 +66,14 @@ impl<'a> Bench<'a> {
     }
 
     fn render(&self, settings: &Settings) -> Film {
-        let mut film = render(self.scene, settings);
+        self.without_lamps(render(self.scene, settings))
+    }
+
+    fn render_guided(&self, settings: &Settings) -> Film {
+        self.without_lamps(render_guided(self.scene, settings))
+    }
+
+    fn without_lamps(&self, mut film: Film) -> Film {
         for (pixel, lamp) in film.pixels.iter_mut().zip(&self.lamps) {
             if *lamp {
                 (pixel.sum, pixel.sum_low) = Default::default();
@@ -304,4 +312,28 @@ fn under_a_panorama() {
         bench.assert_agree(&what, &reference, &bench.render(&other));
     }
     check_samplers_and_roulette(&bench, &reference);
+}
+
+/// Guided paths find what others find, whatever has a diffuse part, and with every way to find lights.
+#[test]
+fn guided_paths() {
+    let mut under_a_panorama = all_lobes();
+    under_a_panorama.environment = Some(Environment {
+        radiance: [1.0; 3],
+        rotation: 0.7,
+        image: Some(panorama().into()),
+    });
+    let scenes = [
+        ("cornell box", load("cornell_box")),
+        ("every lobe", all_lobes()),
+        ("under a panorama", under_a_panorama),
+    ];
+    for (name, scene) in scenes {
+        let bench = Bench::new(name, &scene);
+        let reference = bench.render(&settings(512, 1));
+        let guided = bench.render_guided(&settings(512, 2));
+        bench.assert_agree("guided", &reference, &guided);
+        let bsdf = with_integrator(&settings(1024, 3), "path_bsdf");
+        bench.assert_agree("guided, path_bsdf", &reference, &bench.render_guided(&bsdf));
+    }
 }

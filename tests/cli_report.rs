@@ -93,3 +93,41 @@ fn a_report_alone_goes_to_a_file_and_leaves_out_what_was_not_counted() {
     );
     assert_eq!(report["max_depth"], 1);
 }
+
+#[test]
+fn the_report_says_whether_paths_were_guided() {
+    let guiding = |more: &[&str]| {
+        let run = render(&[&["--json", "-", "--spp", "8"], more].concat()).ends_with(0);
+        let report = run.json();
+        (
+            report["guiding"].clone(),
+            report["mean_radiance"][1].as_f64(),
+            report["warnings"].clone(),
+        )
+    };
+    let none = Value::Array(Vec::new());
+    // The picture is too small to try.
+    let (auto, mean, warnings) = guiding(&[]);
+    assert_eq!(
+        (&auto["asked"], &auto["used"]),
+        (&Value::from("auto"), &Value::from(false))
+    );
+    assert_eq!((&auto["forecast"], warnings), (&Value::Null, none.clone()));
+    assert_eq!(guiding(&["--guiding", "off"]).1, mean);
+    let (on, guided, warnings) = guiding(&["--guiding", "on"]);
+    assert_eq!((&on["used"], warnings), (&Value::from(true), none));
+    assert!(on["forecast"].as_f64() > Some(0.0) && on["densities"].as_u64() > Some(6));
+    assert!(on["seconds"].as_f64() > Some(0.0));
+    // Other samples of the same picture.
+    let ratio = guided.expect("a mean") / mean.expect("a mean");
+    assert!(ratio != 1.0 && (0.8..1.25).contains(&ratio), "{ratio}");
+    let (missed, _, warnings) = guiding(&["--guiding", "on", "--max-depth", "2"]);
+    assert_eq!(missed["used"], Value::from(false));
+    assert!(
+        warnings[0]
+            .as_str()
+            .is_some_and(|w| w.contains("--max-depth 3")),
+        "{warnings}"
+    );
+    render(&["--json", "-", "--guiding", "some"]).refused(&["some", "auto, on or off"]);
+}

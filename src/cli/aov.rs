@@ -10,72 +10,9 @@ use super::message::Warnings;
 use super::progress::ProgressLine;
 use super::report::warn_non_finite;
 use super::settings::aov_integrators;
-use crate::gpu::Device;
-use crate::host::stages::{self, stage};
-use crate::render::{Film, GpuScene, Prepared, RenderError, Renderer, Settings, program};
-use crate::scene::Scene;
-use crate::shader::{ShaderError, ShaderLibrary};
-
-/// What every render of a job shares.
-#[derive(Clone, Copy)]
-pub struct Stage<'a> {
-    /// Where it runs.
-    pub device: &'a Device,
-    /// The shaders.
-    pub library: &'a ShaderLibrary,
-    /// The scene.
-    pub scene: &'a Scene,
-    /// The scene, flat.
-    pub prepared: &'a Prepared,
-    /// The scene on the device.
-    pub gpu_scene: &'a GpuScene,
-}
-
-impl<'a> Stage<'a> {
-    /// Compiles a shader and makes a film.
-    ///
-    /// # Errors
-    /// As [`Renderer::new`].
-    pub fn renderer(&self, settings: &Settings) -> Result<Renderer<'a>, RenderError> {
-        Renderer::new(
-            self.device,
-            self.library,
-            self.scene,
-            self.prepared,
-            self.gpu_scene,
-            settings,
-        )
-    }
-
-    /// Compiles without the driver. Gives the names of the overrides that the shader declares.
-    fn compile(&self, settings: &Settings) -> Result<Vec<String>, RenderError> {
-        let count_steps = stage("probe", || self.device.probe())?.loop_limit.is_some();
-        let files = program::virtual_files(
-            self.library,
-            settings,
-            self.prepared,
-            self.gpu_scene,
-            count_steps,
-            self.device.info().max_shared_memory,
-        )?;
-        let (_, compiled) = program::build(self.library, &files, settings)?;
-        Ok(compiled.overrides.into_iter().map(|o| o.name).collect())
-    }
-
-    /// The names of the overrides that the shader declares; none if they cannot be told without
-    /// values.
-    fn declared(&self, settings: &Settings) -> Result<Option<Vec<String>>, RenderError> {
-        let bare = Settings {
-            overrides: Vec::new(),
-            ..settings.clone()
-        };
-        match self.compile(&bare) {
-            Ok(names) => Ok(Some(names)),
-            Err(RenderError::Shader(ShaderError::Override(_))) => Ok(None),
-            Err(error) => Err(error),
-        }
-    }
-}
+use crate::host::stages;
+use crate::render::{Film, RenderError, Renderer, Settings, Stage};
+use crate::shader::ShaderError;
 
 /// The settings of each AOV. All of them are compiled here: a mistake in one must not come to
 /// light when the picture is done.
@@ -103,6 +40,19 @@ pub fn plan(args: &RenderArgs, stage: Stage<'_>, main: &mut Settings) -> Result<
     Ok(aovs)
 }
 
+/// The names of the overrides that the shader declares; none if they cannot be told without values.
+fn declared(stage: Stage<'_>, settings: &Settings) -> Result<Option<Vec<String>>, RenderError> {
+    let bare = Settings {
+        overrides: Vec::new(),
+        ..settings.clone()
+    };
+    match stage.compile(&bare) {
+        Ok(names) => Ok(Some(names)),
+        Err(RenderError::Shader(ShaderError::Override(_))) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
 fn share_overrides(
     stage: Stage<'_>,
     main: &mut Settings,
@@ -111,10 +61,10 @@ fn share_overrides(
     let has = |names: &Option<Vec<String>>, name: &String| {
         names.as_ref().is_none_or(|names| names.contains(name))
     };
-    let of_main = stage.declared(main)?;
+    let of_main = declared(stage, main)?;
     let mut elsewhere = Vec::new();
     for aov in aovs {
-        let of_aov = stage.declared(aov)?;
+        let of_aov = declared(stage, aov)?;
         aov.overrides.retain(|(name, _)| has(&of_aov, name));
         elsewhere.extend(aov.overrides.iter().map(|(name, _)| name.clone()));
     }

@@ -10,7 +10,7 @@ use super::load::LoadArgs;
 use super::parse;
 use crate::accel::{Instancing, Preset};
 use crate::image::ToneMap;
-use crate::render::LightSelection;
+use crate::render::{Guiding, LightSelection};
 use crate::scene::Selector;
 
 /// Arguments of `etendue render`. Of a flag that takes one value and is given again, the last counts.
@@ -67,6 +67,11 @@ pub struct RenderArgs {
     /// at the point in question) [default: tree, unless lamps are few]
     #[arg(long, value_name = "NAME")]
     pub lights: Option<LightSelection>,
+
+    /// Whether the diffuse lobe is guided to where a training pass found light: auto (where that says that it pays), on,
+    /// off
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub guiding: Guiding,
 
     /// Whether instances of a mesh share its geometry: auto (where that saves much memory; rays then
     /// take longer), never, always

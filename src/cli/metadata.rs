@@ -27,6 +27,7 @@ pub fn metadata(
         ("sampler", settings.sampler.clone()),
         ("max_depth", settings.max_depth.to_string()),
         ("lights", report.lights.selection.unwrap_or("none").into()),
+        ("guided", report.guiding.used.to_string()),
         ("overrides", overrides(args)),
         (
             "shader_hash",

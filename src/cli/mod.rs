@@ -9,6 +9,7 @@ mod camera;
 mod devices;
 mod environment;
 mod exit;
+mod guiding_report;
 mod info;
 mod info_text;
 mod interrupt;

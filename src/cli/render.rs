@@ -5,10 +5,11 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 
-use super::aov::{self, Layers, Stage};
+use super::aov::{self, Layers};
 use super::args::RenderArgs;
 use super::bvh_report::BvhReport;
 use super::exit::Exit;
+use super::guiding_report::GuidingReport;
 use super::interrupt::Interrupt;
 use super::lights_report::LightsReport;
 use super::message::{self, Warnings};
@@ -21,7 +22,9 @@ use crate::gpu::Device;
 use crate::host::Cache;
 use crate::host::stages::stage;
 use crate::image::{Channel, Layer, Metadata, Picture};
-use crate::render::{Film, GpuScene, Prepared, Renderer, Settings};
+use crate::render::{
+    Film, GpuScene, Guidance, Guiding, Prepared, Renderer, Settings, Stage, Training, train,
+};
 use crate::scene::{Features, Scene, gltf};
 
 /// Integrators that show something in a scene without light.
@@ -64,7 +67,11 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
         gpu_scene: &gpu_scene,
     };
     let aovs = aov::plan(args, stage, &mut settings)?;
-    let mut renderer = stage.renderer(&settings)?;
+    let training = timed(&mut time.guide, || train(stage, &settings, args.guiding))?;
+    warn_of_guide(args, training.as_ref(), &mut warnings);
+    let guide = training.as_ref().and_then(|t| t.guide.as_ref());
+    let mut renderer =
+        stage.guided_renderer(&settings, guide.map_or(Guidance::None, Guidance::By))?;
     time.compile = renderer.compile_time().as_secs_f64();
     warnings.add_all(&renderer.warnings());
     if outputs.only_shader {
@@ -87,6 +94,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     report.seconds = time;
     report.bvh = BvhReport::new(args.bvh, &prepared);
     report.lights = LightsReport::new(&prepared);
+    report.guiding = GuidingReport::new(args.guiding, training.as_ref());
     report.add_film(&film, &renderer.progress(), args.stats, &mut warnings);
     report.interrupted = interrupt.requested();
     report.device_bytes = device.peak_bytes_in_use();
@@ -202,6 +210,16 @@ fn warn_of_scene(scene: &Scene, prepared: &Prepared, args: &RenderArgs, warnings
         warnings.add(
             "the scene has no light (no emission, no punctual light, no environment), so the \
              picture will be black: add light from all around with `--env 1`",
+        );
+    }
+}
+
+fn warn_of_guide(args: &RenderArgs, training: Option<&Training>, warnings: &mut Warnings) {
+    let is_missed = args.guiding == Guiding::On && training.is_none_or(|t| t.guide.is_none());
+    if is_missed {
+        warnings.add(
+            "paths are not guided: that takes an integrator of paths with at least three edges (--max-depth 3), which \
+             meet a diffuse surface",
         );
     }
 }

@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::args::RenderArgs;
 use super::bvh_report::BvhReport;
+use super::guiding_report::GuidingReport;
 use super::lights_report::LightsReport;
 use super::load;
 use super::message::Warnings;
@@ -69,6 +70,8 @@ pub struct Report {
     pub bvh: BvhReport,
     /// The lights, and how one is chosen.
     pub lights: LightsReport,
+    /// Whether paths were guided.
+    pub guiding: GuidingReport,
     /// Most bytes of device memory held at once.
     pub device_bytes: u64,
     /// Mean over the picture, W·sr⁻¹·m⁻², linear Rec. 709.
@@ -96,6 +99,8 @@ pub struct Seconds {
     pub device: f64,
     /// Copying the scene to it.
     pub upload: f64,
+    /// The training pass of a guide, its compilation included.
+    pub guide: f64,
     /// Composing and compiling the shader, the driver's part included.
     pub compile: f64,
     /// Drawing the picture's samples.

@@ -2,6 +2,7 @@
 
 use super::error::RenderError;
 use super::gpu_scene::GpuScene;
+use super::guide::Guidance;
 use super::layout::layouts;
 use super::list_wgsl::list_wgsl;
 use super::prepared::Prepared;
@@ -51,9 +52,15 @@ pub fn virtual_files(
     gpu_scene: &GpuScene,
     count_steps: bool,
     workgroup_bytes: u32,
+    guidance: Guidance<'_>,
 ) -> Result<VirtualFiles, RenderError> {
     let mut files = choice_files(library, settings)?;
-    let constants = constants(scene, settings, count_steps, workgroup_bytes);
+    let mut constants = constants(scene, settings, count_steps, workgroup_bytes);
+    constants.extend(
+        guidance
+            .constants()
+            .map(|(name, on)| (name, Constant::Bool(on))),
+    );
     files.insert("features.wgsl".into(), features_wgsl(&constants));
     files.insert(
         "buffers.wgsl".into(),

@@ -8,11 +8,13 @@ use super::error::RenderError;
 use super::film::Film;
 use super::frame::base_frame;
 use super::gpu_scene::GpuScene;
+use super::guide::Guidance;
 use super::layout::{Dispatch, ElementCounts, FilmPixel, Status};
 use super::pace::{Pace, Progress, TILE_LANES};
 use super::prepared::Prepared;
 use super::program;
 use super::settings::Settings;
+use super::stage::Stage;
 use crate::accel::Steps;
 use crate::gpu::{BindGroup, BindingKind, Buffer, Device, Pipeline};
 use crate::host::stages::stage;
@@ -60,18 +62,28 @@ impl<'a> Renderer<'a> {
         gpu_scene: &GpuScene,
         settings: &Settings,
     ) -> Result<Self, RenderError> {
+        let stage = Stage {
+            device,
+            library,
+            scene,
+            prepared,
+            gpu_scene,
+        };
+        Self::on(device, stage, settings, Guidance::None)
+    }
+
+    /// The same on a stage, of which it keeps the device, with a guide, or to learn one.
+    pub(super) fn on(
+        device: &'a Device,
+        on: Stage<'_>,
+        settings: &Settings,
+        guidance: Guidance<'_>,
+    ) -> Result<Self, RenderError> {
         settings.check()?;
         let start = Instant::now();
         let loop_limit = stage("probe", || device.probe())?.loop_limit;
-        let virtuals = program::virtual_files(
-            library,
-            settings,
-            prepared,
-            gpu_scene,
-            loop_limit.is_some(),
-            device.info().max_shared_memory,
-        )?;
-        let (composed, compiled) = program::build(library, &virtuals, settings)?;
+        let virtuals = on.virtual_files(settings, guidance)?;
+        let (composed, compiled) = program::build(on.library, &virtuals, settings)?;
         if compiled.uses_int64() && !device.info().int64 {
             let device = device.info().name.clone();
             return Err(RenderError::NoInt64 { device });
@@ -107,9 +119,7 @@ impl<'a> Renderer<'a> {
             compile_time: Duration::ZERO,
         };
         let used: Vec<u32> = kinds.iter().map(|k| k.0).collect();
-        stage("film", || {
-            renderer.bind_bands(scene, prepared, gpu_scene, &used)
-        })?;
+        stage("film", || renderer.bind_bands(on, guidance, &used))?;
         stage("driver", || renderer.warm_up())?;
         renderer.compile_time = start.elapsed();
         Ok(renderer)
@@ -117,12 +127,11 @@ impl<'a> Renderer<'a> {
 
     fn bind_bands(
         &mut self,
-        scene: &Scene,
-        prepared: &Prepared,
-        gpu_scene: &GpuScene,
+        on: Stage<'_>,
+        guidance: Guidance<'_>,
         used: &[u32],
     ) -> Result<(), RenderError> {
-        let base = base_frame(scene, prepared, &self.settings);
+        let base = base_frame(on.scene, on.prepared, &self.settings);
         let limit = self.device.info().max_storage_buffer_range;
         for band in bands(self.settings.width, self.settings.height, limit)? {
             let frame = self.device.buffer_with("frame", &[band.frame(base)])?;
@@ -139,7 +148,8 @@ impl<'a> Renderer<'a> {
             ];
             let buffers: Vec<_> = own
                 .into_iter()
-                .chain(gpu_scene.bindings())
+                .chain(on.gpu_scene.bindings())
+                .chain(guidance.binding())
                 .filter(|(binding, _)| used.contains(binding))
                 .map(|(binding, buffer)| (binding, buffer, None))
                 .collect();
@@ -169,8 +179,27 @@ impl<'a> Renderer<'a> {
         if self.try_out(on_progress)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
-        while self.pace.spp_done < self.settings.spp {
-            let target = self.pace.spp_done + self.pace.pass_samples();
+        self.draw_until(self.settings.spp, on_progress)
+    }
+
+    /// Draws samples until each pixel has so many, at most those that the settings ask for.
+    ///
+    /// # Errors
+    /// As [`Self::render`].
+    pub fn render_to(&mut self, spp: u64) -> Result<(), RenderError> {
+        let keep_on = &mut |_: &Self, _: &Progress| ControlFlow::Continue(());
+        self.draw_until(spp.min(self.settings.spp), keep_on)
+            .map(|_| ())
+    }
+
+    fn draw_until(
+        &mut self,
+        spp: u64,
+        on_progress: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, RenderError> {
+        while self.pace.spp_done < spp {
+            let samples = self.pace.pass_samples().min(spp - self.pace.spp_done);
+            let target = self.pace.spp_done + samples;
             for band in 0..self.bands.len() {
                 if self.render_band(band, target, on_progress)?.is_break() {
                     return Ok(ControlFlow::Break(()));

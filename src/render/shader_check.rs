@@ -97,6 +97,8 @@ pub fn constants(on: bool, structure: Structure) -> Vec<(&'static str, Constant)
         ("COLOR_OFFSET", Constant::U32(11)),
         ("COUNT_STEPS", Constant::Bool(on)),
         ("COUNT_RAYS", Constant::Bool(on)),
+        ("HAS_GUIDE", Constant::Bool(on)),
+        ("RECORDS_PATHS", Constant::Bool(on)),
     ]);
     constants
 }

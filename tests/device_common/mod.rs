@@ -78,6 +78,8 @@ impl Setup {
             "HAS_ENVIRONMENT_IMAGE",
             "COUNT_STEPS",
             "COUNT_RAYS",
+            "HAS_GUIDE",
+            "RECORDS_PATHS",
         ] {
             constants.insert(name, Constant::Bool(false));
         }
@@ -181,6 +183,7 @@ pub const FRAME: u32 = 0;
 pub const TEXTURES: u32 = 5;
 pub const SRGB_TABLE: u32 = 8;
 pub const BSDF_TABLES: u32 = 10;
+pub const GUIDE: u32 = 11;
 pub const ELEMENTS: u32 = 16;
 pub const TEXEL_WORDS: u32 = 19;
 

@@ -12,7 +12,9 @@ use std::sync::OnceLock;
 
 use etendue::accel::BuildOptions;
 use etendue::gpu::Device;
-use etendue::render::{Film, GpuScene, LightSelection, Prepared, Renderer, Settings};
+use etendue::render::{
+    Film, GpuScene, Guidance, Guiding, LightSelection, Prepared, Renderer, Settings, Stage, train,
+};
 use etendue::scene::{Scene, gltf};
 use etendue::shader::ShaderLibrary;
 
@@ -50,8 +52,30 @@ pub fn render_prepared(scene: &Scene, prepared: &Prepared, settings: &Settings) 
     let device = device();
     let gpu_scene = GpuScene::upload(device, prepared).expect("room on the device");
     let library = ShaderLibrary::embedded();
-    let mut renderer = Renderer::new(device, &library, scene, prepared, &gpu_scene, settings)
-        .expect("a compiled shader");
+    let renderer = Renderer::new(device, &library, scene, prepared, &gpu_scene, settings);
+    whole_film(renderer.expect("a compiled shader"), settings)
+}
+
+/// The same with paths that a training pass guides.
+pub fn render_guided(scene: &Scene, settings: &Settings) -> Film {
+    let prepared = Prepared::new(scene, settings.camera, &BuildOptions::default());
+    let prepared = prepared.expect("a prepared scene");
+    let gpu_scene = GpuScene::upload(device(), &prepared).expect("room on the device");
+    let library = ShaderLibrary::embedded();
+    let stage = Stage {
+        device: device(),
+        library: &library,
+        scene,
+        prepared: &prepared,
+        gpu_scene: &gpu_scene,
+    };
+    let training = train(stage, settings, Guiding::On).expect("a training pass");
+    let guide = training.and_then(|t| t.guide).expect("a guide");
+    let renderer = stage.guided_renderer(settings, Guidance::By(&guide));
+    whole_film(renderer.expect("a compiled shader"), settings)
+}
+
+fn whole_film(mut renderer: Renderer<'_>, settings: &Settings) -> Film {
     let flow = renderer
         .render(&mut |_, _| ControlFlow::Continue(()))
         .expect("a render that ends");

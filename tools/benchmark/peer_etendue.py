@@ -71,7 +71,7 @@ class Etendue:
         phases = answer["seconds"]
         self.about = {"version": f"étendue {answer['version']}", "driver": answer["driver"], "device": answer["device"]}
         self.about |= {key: phases[key] for key in ("load", "accel", "upload", "compile")}
-        return {"seconds": phases["render"], "mean": answer["mean_radiance"], "report": answer}
+        return {"seconds": phases["render"] + answer["guiding"]["seconds"], "mean": answer["mean_radiance"], "report": answer}
 
     def close(self):
         """Nothing is left running."""

@@ -176,6 +176,24 @@ shared_struct! {
     }
 }
 
+shared_struct! {
+    /// What a vertex of a path of the training pass leaves, or the path itself.
+    PathRecord {
+        /// Where the vertex is, metres from the camera.
+        position: [f32; 3],
+        /// Direction of the normal and square of the sample, or [`NONE`]; of the path the number of its vertices.
+        square: u32,
+        /// Luminance of what light from there on is multiplied by.
+        beta: f32,
+        /// Luminance gathered up to the vertex, or by the path.
+        gathered: f32,
+        /// Unused.
+        pad0: u32,
+        /// Unused.
+        pad1: u32,
+    }
+}
+
 /// Every struct that host and shader share.
 pub fn layouts() -> Vec<StructLayout> {
     vec![
@@ -191,6 +209,7 @@ pub fn layouts() -> Vec<StructLayout> {
         Light::layout(),
         LightNode::layout(),
         PunctualLight::layout(),
+        PathRecord::layout(),
     ]
 }
 

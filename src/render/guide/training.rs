@@ -1,0 +1,158 @@
+//! The training pass.
+
+use std::time::Instant;
+
+use super::forecast::forecast;
+use super::lesson::{RECORDS_PER_PATH, lessons};
+use super::table::Table;
+use super::{Guidance, PathRecord};
+use crate::gpu::Buffer;
+use crate::render::error::RenderError;
+use crate::render::{Guiding, Settings, Stage};
+
+/// Seed of the training pass, whatever that of the picture: pictures of all seeds have the same guide.
+const SEED: u32 = 0x6a09_e667;
+/// Pixels of a picture below which [`Guiding::Auto`] does not try: it is done before there is a guide.
+const SMALLEST_PICTURE: u64 = 1 << 16;
+/// Pixels of the training picture for one of the picture, and bounds on their number.
+const PIXEL_SHARE: f64 = 0.25;
+const PIXELS: (f64, f64) = (16_384.0, 131_072.0);
+/// Passes over the training picture, if the first one promises that guiding pays.
+const PASSES: u64 = 3;
+/// The largest forecast with which a guide is used: guided paths are longer, as fewer leave the scene.
+const LARGEST_FORECAST: f64 = 0.8;
+
+/// What came of a training pass.
+pub struct Training {
+    /// The guide on the device, where there is one.
+    pub guide: Option<Buffer>,
+    /// The relative variance that it lets expect, over that without it.
+    pub forecast: Option<f64>,
+    /// Densities that were learnt.
+    pub densities: usize,
+    /// Wall time of drawing and learning.
+    pub seconds: f64,
+}
+
+/// Draws a small picture by the integrator of the settings, and makes a guide of what its paths find, where that pays or is
+/// asked for. None where nothing can be learnt: an integrator without path_step's records, paths without a second bounce, or
+/// a picture too small.
+///
+/// The guide depends on the scene, the camera, the picture's shape and size, and the shaders, not on the number of samples or
+/// the seed: parts of a render have the same one.
+///
+/// # Errors
+/// As [`Stage::renderer`] and [`Renderer::render`](crate::render::Renderer::render).
+pub fn train(
+    stage: Stage<'_>,
+    settings: &Settings,
+    guiding: Guiding,
+) -> Result<Option<Training>, RenderError> {
+    let pixels = u64::from(settings.width) * u64::from(settings.height);
+    let is_worth_a_try = match guiding {
+        Guiding::Off => false,
+        Guiding::On => true,
+        Guiding::Auto => pixels >= SMALLEST_PICTURE,
+    };
+    if !is_worth_a_try || settings.max_depth < 3 || !stage.records_paths(settings)? {
+        return Ok(None);
+    }
+    let small = training_settings(settings);
+    let count = u64::from(small.width) * u64::from(small.height) * RECORDS_PER_PATH as u64;
+    let records = stage
+        .device
+        .buffer("path records", count * size_of::<PathRecord>() as u64)?;
+    let mut renderer = stage.guided_renderer(&small, Guidance::Records(&records))?;
+    let start = Instant::now();
+    let mut learnt = Vec::new();
+    let mut promise = None;
+    for pass in 1..=PASSES {
+        renderer.render_to(pass)?;
+        let paths: Vec<PathRecord> = stage.device.read(&records, 0, count)?;
+        if pass == 1 {
+            promise = promise_of(&paths, small.width as usize);
+        }
+        learnt.extend(paths.chunks_exact(RECORDS_PER_PATH).flat_map(lessons));
+        if !is_used(guiding, promise) {
+            break;
+        }
+    }
+    let table = Table::learn(&learnt).filter(|_| is_used(guiding, promise));
+    let upload = |table: &Table| stage.device.buffer_with("guide", &table.words());
+    Ok(Some(Training {
+        guide: table.as_ref().map(upload).transpose()?,
+        forecast: promise,
+        densities: table.as_ref().map_or(0, |t| t.densities().len()),
+        seconds: start.elapsed().as_secs_f64(),
+    }))
+}
+
+fn is_used(guiding: Guiding, forecast: Option<f64>) -> bool {
+    guiding == Guiding::On || forecast.is_some_and(|f| f < LARGEST_FORECAST)
+}
+
+/// What a guide made of half of the paths, every other one of the picture's, would do for the other half.
+fn promise_of(records: &[PathRecord], width: usize) -> Option<f64> {
+    let paths = || records.chunks_exact(RECORDS_PER_PATH).enumerate();
+    let half = |odd: usize| paths().filter(move |(i, _)| (i % width + i / width) % 2 == odd);
+    let learnt: Vec<_> = half(0).flat_map(|(_, path)| lessons(path)).collect();
+    forecast(&Table::learn(&learnt)?, half(1).map(|(_, path)| path))
+}
+
+fn training_settings(settings: &Settings) -> Settings {
+    let pixels = f64::from(settings.width) * f64::from(settings.height);
+    let wanted = (PIXEL_SHARE * pixels).clamp(PIXELS.0, PIXELS.1);
+    let scale = (wanted / pixels).sqrt();
+    // As many as are wanted at most, however long and thin the picture is.
+    let width = (f64::from(settings.width) * scale)
+        .round()
+        .clamp(1.0, wanted);
+    let height = (f64::from(settings.height) * scale)
+        .round()
+        .clamp(1.0, wanted / width);
+    Settings {
+        width: width as u32,
+        height: (height as u32).max(1),
+        spp: PASSES,
+        first_sample: 0,
+        seed: SEED,
+        stats: false,
+        pass_samples: None,
+        ..settings.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_training_picture_has_the_shape_of_the_picture_and_a_bounded_size() {
+        let sizes = [
+            (512, 512),
+            (1920, 1080),
+            (65_536, 1),
+            (1, 65_536),
+            (65_536, 65_536),
+            (256, 256),
+            (8, 8),
+        ];
+        for (width, height) in sizes {
+            let small = training_settings(&Settings {
+                width,
+                height,
+                ..Settings::default()
+            });
+            let pixels = f64::from(small.width) * f64::from(small.height);
+            assert!(
+                pixels <= PIXELS.1 * 1.01,
+                "{width}x{height}: {}x{}",
+                small.width,
+                small.height
+            );
+            assert!(small.check().is_ok());
+        }
+        let small = training_settings(&Settings::default());
+        assert_eq!((small.width, small.height), (256, 256));
+    }
+}

@@ -1,0 +1,83 @@
+//! The training pass: what it depends on, and when it guides paths.
+
+mod scene_common;
+
+use etendue::accel::BuildOptions;
+use etendue::gpu::Buffer;
+use etendue::render::{GpuScene, Guiding, Prepared, Settings, Stage, Training, train};
+use etendue::scene::Scene;
+use etendue::shader::ShaderLibrary;
+use scene_common::{device, load, square, with_integrator};
+
+/// What comes of training for a scene, with the words of the guide.
+fn train_for(scene: &Scene, settings: &Settings, guiding: Guiding) -> Option<(Training, Vec<u32>)> {
+    let prepared = Prepared::new(scene, settings.camera, &BuildOptions::default());
+    let prepared = prepared.expect("a prepared scene");
+    let gpu_scene = GpuScene::upload(device(), &prepared).expect("room on the device");
+    let library = ShaderLibrary::embedded();
+    let stage = Stage {
+        device: device(),
+        library: &library,
+        scene,
+        prepared: &prepared,
+        gpu_scene: &gpu_scene,
+    };
+    let training = train(stage, settings, guiding).expect("a training pass")?;
+    let words = |guide: &Buffer| device().read(guide, 0, guide.bytes() / 4).expect("words");
+    let words = training.guide.as_ref().map_or(Vec::new(), words);
+    Some((training, words))
+}
+
+#[test]
+fn parts_of_a_render_have_the_same_guide() {
+    let scene = load("cornell_box");
+    let whole = square(64, 64, 8);
+    let part = Settings {
+        spp: 3,
+        first_sample: 61,
+        seed: 5,
+        stats: true,
+        piece_tiles: Some(1),
+        pass_samples: Some(1),
+        ..whole.clone()
+    };
+    let (training, words) = train_for(&scene, &whole, Guiding::On).expect("a guide");
+    let (again, words_again) = train_for(&scene, &part, Guiding::On).expect("a guide");
+    assert!(words.len() > 10_000 && words == words_again);
+    assert_eq!(training.forecast, again.forecast);
+}
+
+#[test]
+fn paths_are_guided_where_that_is_forecast_to_pay() {
+    let auto = |name: &str, settings: &Settings| {
+        let found = train_for(&load(name), settings, Guiding::Auto);
+        found.map(|(training, _)| (training.guide.is_some(), training.forecast))
+    };
+    let settings = square(256, 16, 8);
+    let (used, forecast) = auto("cornell_box", &settings).expect("a try");
+    assert!(
+        used && (0.3..0.8).contains(&forecast.expect("a forecast")),
+        "{forecast:?}"
+    );
+    // The same light from everywhere: there is nothing to learn but noise.
+    let (used, forecast) = auto("furnace", &settings).expect("a try");
+    assert!(!used && forecast.expect("a forecast") > 1.0, "{forecast:?}");
+    // Too small a picture, direct light alone, an integrator without paths.
+    let small = Settings {
+        width: 255,
+        ..settings.clone()
+    };
+    let direct = Settings {
+        max_depth: 2,
+        ..settings.clone()
+    };
+    for untried in [
+        small,
+        direct,
+        with_integrator(&settings, "ao"),
+        with_integrator(&settings, "naive"),
+    ] {
+        assert!(auto("cornell_box", &untried).is_none());
+    }
+    assert!(train_for(&load("cornell_box"), &settings, Guiding::Off).is_none());
+}
