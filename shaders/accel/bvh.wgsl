@@ -19,8 +19,9 @@ struct Traversal {
   // The group that was put aside last, if stack_size > 0; those before it are on the stack.
   top: Group,
   stack_size: u32,
-  // The element to look at next.
+  // The element to look at next, and its first words: the wait for memory begins as soon as it is known.
   next: u32,
+  start: ElementStart,
   occluded: bool,
   searching: bool,
 }
@@ -32,6 +33,7 @@ fn trace_begin(query: Query) -> Traversal {
   t.searching = query.has_ray || query.has_shadow;
   t.stack_size = 0u;
   trace_ray(&t, query.has_shadow);
+  t.start = load_element_start(0u);
   return t;
 }
 
@@ -66,7 +68,7 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
       break;
     }
     let index = (*t).next & ~LEAF_FLAG;
-    let e = load_element(index);
+    let e = load_element_from(index, (*t).start);
     if (COUNT_RAYS) { count_element((*t).next < LEAF_FLAG); }
     if ((*t).next < LEAF_FLAG) {
       let children = visit_node(e, (*t).boxes, (*t).best.high);
@@ -115,12 +117,24 @@ fn go_on(t: ptr<function, Traversal>) {
       }
     }
   }
-  if ((*t).group.slots != 0u) {
+  // The root, unless there is more to do for this ray.
+  (*t).next = 0u;
+  let is_done = (*t).group.slots == 0u;
+  if (!is_done) {
     let slot = ((*t).group.slots & 15u) - 1u;
     let is_leaf = slot >= ((*t).group.header & 15u);
     (*t).next = (((*t).group.header >> 4u) + slot) | select(0u, LEAF_FLAG, is_leaf);
     (*t).group.slots >>= 4u;
-  } else if ((*t).is_shadow) {
+  }
+  (*t).start = load_element_start((*t).next & ~LEAF_FLAG);
+  if (is_done) {
+    finish_ray(t);
+  }
+}
+
+// Takes up the second ray after the first.
+fn finish_ray(t: ptr<function, Traversal>) {
+  if ((*t).is_shadow) {
     (*t).occluded = (*t).best.triangle != MISS;
     (*t).searching = (*t).query.has_ray;
     trace_ray(t, false);

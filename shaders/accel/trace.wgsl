@@ -6,7 +6,8 @@
 //   fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool
 //   fn trace_answer(t: Traversal) -> Answer
 //
-// Expects: Element, Triangle (types.wgsl); fn load_element(i: u32) -> Element;
+// Expects: Element, Triangle (types.wgsl); fn load_element(i: u32) -> Element, and in two steps
+// fn load_element_start(i: u32) -> ElementStart, fn load_element_from(i: u32, start: ElementStart) -> Element;
 // const HAS_ALPHA, HAS_SINGLE_SIDED; fn count_step(), called once a loop iteration; and
 //
 //   fn accept_hit(triangle: Triangle, b: vec3f, back_face: bool, camera_ray: bool, seed: u32) -> bool

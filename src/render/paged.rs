@@ -92,7 +92,8 @@ impl PagedBuffer {
     }
 }
 
-/// Bindings and accessor of an array of `pages` pages.
+/// Bindings and accessor of an array of `pages` pages. Elements of the acceleration structure have two more accessors,
+/// that of their first words and one that takes these (`shaders/accel/bvh.wgsl`).
 fn paged_wgsl(
     name: &str,
     element: &str,
@@ -101,40 +102,55 @@ fn paged_wgsl(
     page_bits: u32,
     first_binding: u32,
 ) -> String {
-    let mut text = String::new();
-    for page in 0..pages {
-        let binding = first_binding + page as u32;
+    let mut text = declarations(name, element, pages, first_binding);
+    let by_page = |read: &dyn Fn(usize) -> String| by_page(pages, page_bits, read);
+    let whole = by_page(&|page| format!("{name}_{page}[offset]"));
+    text += &format!("fn {accessor}(index: u32) -> {element} {{\n{whole}}}\n");
+    if name == LARGE_ARRAYS[0].0 {
+        // Where words are read one by one, reading ahead costs more than it brings.
         text += &format!(
-            "@group(0) @binding({binding}) var<storage, read> {name}_{page}: array<{element}>;\n"
+            "alias ElementStart = u32;\n\
+             fn {accessor}_start(index: u32) -> ElementStart {{\n    return index;\n}}\n\
+             fn {accessor}_from(index: u32, start: ElementStart) -> Element {{\n    \
+             return {accessor}(index);\n}}\n"
         );
     }
-    text += &format!("fn {accessor}(index: u32) -> {element} {{\n");
-    if pages == 1 {
-        text += &format!("    return {name}_0[index];\n");
-    } else {
-        let mask = (1_u64 << page_bits) - 1;
-        text +=
-            &format!("    let offset = index & {mask}u;\n    switch (index >> {page_bits}u) {{\n");
-        for page in 1..pages {
-            text += &format!("        case {page}u: {{ return {name}_{page}[offset]; }}\n");
-        }
-        text += &format!("        default: {{ return {name}_0[offset]; }}\n    }}\n");
-    }
-    text + "}\n"
+    text
 }
 
-/// Bindings and accessor of an array of [`Element`](crate::accel::Element)s that are read in double
+fn declarations(name: &str, element: &str, pages: usize, first_binding: u32) -> String {
+    let declare = |page| {
+        let binding = first_binding + page as u32;
+        format!(
+            "@group(0) @binding({binding}) var<storage, read> {name}_{page}: array<{element}>;\n"
+        )
+    };
+    (0..pages).map(declare).collect()
+}
+
+/// The body of a function that returns what `read` gives for the page of `index`, at `offset` in it.
+fn by_page(pages: usize, page_bits: u32, read: &dyn Fn(usize) -> String) -> String {
+    if pages == 1 {
+        return format!("    let offset = index;\n    return {};\n", read(0));
+    }
+    let mask = (1_u64 << page_bits) - 1;
+    let case = |page| format!("        case {page}u: {{ return {}; }}\n", read(page));
+    let cases: String = (1..pages).map(case).collect();
+    format!(
+        "    let offset = index & {mask}u;\n    switch (index >> {page_bits}u) {{\n{cases}        \
+         default: {{ return {}; }}\n    }}\n",
+        read(0)
+    )
+}
+
+/// Bindings and accessors of an array of [`Element`](crate::accel::Element)s that are read in double
 /// words, where a device is faster so.
 fn doublewords_wgsl(pages: usize, page_bits: u32, first_binding: u32) -> String {
     let (name, _, accessor) = LARGE_ARRAYS[0];
-    let mut text = String::new();
+    let mut text = declarations(name, "u64", pages, first_binding);
     for page in 0..pages {
-        let binding = first_binding + page as u32;
-        text += &format!(
-            "@group(0) @binding({binding}) var<storage, read> {name}_{page}: array<u64>;\n\
-             fn {accessor}_{page}(first: u32) -> Element {{\n"
-        );
-        for i in 0..8 {
+        text += &format!("fn {accessor}_{page}(first: u32, q0: u64) -> Element {{\n");
+        for i in 1..8 {
             text += &format!("    let q{i} = {name}_{page}[first + {i}u];\n");
         }
         let word = |i| format!("u32(q{i}), u32(q{i} >> 32u)");
@@ -142,12 +158,17 @@ fn doublewords_wgsl(pages: usize, page_bits: u32, first_binding: u32) -> String 
         let vectors = [0, 1, 2, 3].map(vector).join(",\n        ");
         text += &format!("    return Element(\n        {vectors},\n    );\n}}\n");
     }
-    let mask = (1_u64 << page_bits) - 1;
-    text += &format!("fn {accessor}(index: u32) -> Element {{\n");
-    text += &format!("    let first = 8u * (index & {mask}u);\n");
-    text += &format!("    switch (index >> {page_bits}u) {{\n");
-    for page in 1..pages {
-        text += &format!("        case {page}u: {{ return {accessor}_{page}(first); }}\n");
-    }
-    text + &format!("        default: {{ return {accessor}_0(first); }}\n    }}\n}}\n")
+    let start = by_page(pages, page_bits, &|page| {
+        format!("{name}_{page}[8u * offset]")
+    });
+    let rest = by_page(pages, page_bits, &|page| {
+        format!("{accessor}_{page}(8u * offset, start)")
+    });
+    text + &format!(
+        "alias ElementStart = u64;\n\
+         fn {accessor}_start(index: u32) -> ElementStart {{\n{start}}}\n\
+         fn {accessor}_from(index: u32, start: ElementStart) -> Element {{\n{rest}}}\n\
+         fn {accessor}(index: u32) -> Element {{\n    \
+         return {accessor}_from(index, {accessor}_start(index));\n}}\n"
+    )
 }
