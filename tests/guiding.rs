@@ -62,9 +62,13 @@ fn paths_are_guided_where_that_is_forecast_to_pay() {
     // The same light from everywhere: there is nothing to learn but noise.
     let (used, forecast) = auto("furnace", &settings).expect("a try");
     assert!(!used && forecast.expect("a forecast") > 1.0, "{forecast:?}");
-    // Too small a picture, direct light alone, an integrator without paths.
+    // Too small a picture, too few samples, direct light alone, an integrator without paths.
     let small = Settings {
         width: 255,
+        ..settings.clone()
+    };
+    let short = Settings {
+        spp: 3,
         ..settings.clone()
     };
     let direct = Settings {
@@ -73,6 +77,7 @@ fn paths_are_guided_where_that_is_forecast_to_pay() {
     };
     for untried in [
         small,
+        short,
         direct,
         with_integrator(&settings, "ao"),
         with_integrator(&settings, "naive"),

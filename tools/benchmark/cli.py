@@ -44,6 +44,7 @@ def parser():
     top.add_argument(
         "--threads", type=positive, default=places.threads(), help="for everyone (default: all, %(default)s)"
     )
+    top.add_argument("--guiding", choices=["auto", "on", "off"], default="auto", help="of étendue (default %(default)s)")
     top.add_argument("--quick", action="store_true", help="3 rounds of 4 samples at 256x256: tries the machinery out")
     add_device(top)
     return top
@@ -74,6 +75,7 @@ def settings_of(options):
         options.batches,
         options.batch_spp,
         options.threads,
+        guiding=options.guiding,
     )
     if options.quick:
         s.size, s.rounds, s.spp, s.batches, s.batch_spp = 256, 3, 4, 8, 8

@@ -30,6 +30,8 @@ class Settings:
     batches: int = 8
     batch_spp: int = 16
     threads: int = 2
+    # Of étendue.
+    guiding: str = "auto"
 
 
 def open_peer(name, scene, threads):
@@ -51,7 +53,7 @@ class Row:
     def __init__(self, settings, scene, peer, folder):
         self.settings, self.scene, self.name, self.folder = settings, scene, peer, pathlib.Path(folder)
         self.path = scene_writer.path_of(scene)
-        self.ours = Etendue(settings.etendue, self.path, settings.threads)
+        self.ours = Etendue(settings.etendue, self.path, settings.threads, settings.guiding)
         self.peer = None
 
     def close(self):

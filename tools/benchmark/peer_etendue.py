@@ -33,12 +33,15 @@ def runner(driver):
 
 
 class Etendue:
-    """Renders one scene. Scene loading, build and compilation are repeated each time and timed apart."""
+    """Renders one scene. Scene loading, build and compilation are repeated each time and timed apart.
+
+    guiding: auto, on or off, as of `etendue render`; what looks at a kernel wants it off.
+    """
 
     name = "etendue"
 
-    def __init__(self, command, scene, threads):
-        self.command, self.scene = command, scene
+    def __init__(self, command, scene, threads, guiding="off"):
+        self.command, self.scene, self.guiding = command, scene, guiding
         self.environment = os.environ | {"LP_NUM_THREADS": str(threads), "RAYON_NUM_THREADS": str(threads)}
         self.about = {}
 
@@ -47,6 +50,7 @@ class Etendue:
         environment = self.scene.parent / "environment.exr"
         if environment.exists():
             flags.setdefault("env", environment)
+        flags.setdefault("guiding", self.guiding)
         command = [*self.command, "render", str(self.scene), "--quiet"]
         for flag, value in flags.items():
             command += [f"--{flag.replace('_', '-')}"] + ([] if value is True else [str(value)])
@@ -71,7 +75,9 @@ class Etendue:
         phases = answer["seconds"]
         self.about = {"version": f"étendue {answer['version']}", "driver": answer["driver"], "device": answer["device"]}
         self.about |= {key: phases[key] for key in ("load", "accel", "upload", "compile")}
-        return {"seconds": phases["render"] + answer["guiding"]["seconds"], "mean": answer["mean_radiance"], "report": answer}
+        # A guide's training is a part of the picture's time, as its samples are of a peer's.
+        seconds = phases["render"] + answer["guiding"]["seconds"]
+        return {"seconds": seconds, "mean": answer["mean_radiance"], "report": answer}
 
     def close(self):
         """Nothing is left running."""

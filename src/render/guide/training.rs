@@ -12,8 +12,10 @@ use crate::render::{Guiding, Settings, Stage};
 
 /// Seed of the training pass, whatever that of the picture: pictures of all seeds have the same guide.
 const SEED: u32 = 0x6a09_e667;
-/// Pixels of a picture below which [`Guiding::Auto`] does not try: it is done before there is a guide.
+/// Pixels of a picture, and samples of a pixel up to its last one, below which [`Guiding::Auto`] does not try: it is
+/// done before there is a guide.
 const SMALLEST_PICTURE: u64 = 1 << 16;
+const FEWEST_SAMPLES: u64 = 4;
 /// Pixels of the training picture for one of the picture, and bounds on their number.
 const PIXEL_SHARE: f64 = 0.25;
 const PIXELS: (f64, f64) = (16_384.0, 131_072.0);
@@ -35,11 +37,11 @@ pub struct Training {
 }
 
 /// Draws a small picture by the integrator of the settings, and makes a guide of what its paths find, where that pays or is
-/// asked for. None where nothing can be learnt: an integrator without path_step's records, paths without a second bounce, or
-/// a picture too small.
+/// asked for. None where nothing can be learnt (an integrator whose paths leave no records, paths without a second
+/// bounce), or the picture is not worth a try.
 ///
-/// The guide depends on the scene, the camera, the picture's shape and size, and the shaders, not on the number of samples or
-/// the seed: parts of a render have the same one.
+/// The guide depends on the scene, the camera, the picture's size and the shaders, not on the number of samples or the
+/// seed: parts of a render have the same one.
 ///
 /// # Errors
 /// As [`Stage::renderer`] and [`Renderer::render`](crate::render::Renderer::render).
@@ -48,13 +50,10 @@ pub fn train(
     settings: &Settings,
     guiding: Guiding,
 ) -> Result<Option<Training>, RenderError> {
-    let pixels = u64::from(settings.width) * u64::from(settings.height);
-    let is_worth_a_try = match guiding {
-        Guiding::Off => false,
-        Guiding::On => true,
-        Guiding::Auto => pixels >= SMALLEST_PICTURE,
-    };
-    if !is_worth_a_try || settings.max_depth < 3 || !stage.records_paths(settings)? {
+    if !is_worth_a_try(settings, guiding)
+        || settings.max_depth < 3
+        || !stage.records_paths(settings)?
+    {
         return Ok(None);
     }
     let small = training_settings(settings);
@@ -72,12 +71,12 @@ pub fn train(
         if pass == 1 {
             promise = promise_of(&paths, small.width as usize);
         }
-        learnt.extend(paths.chunks_exact(RECORDS_PER_PATH).flat_map(lessons));
         if !is_used(guiding, promise) {
             break;
         }
+        learnt.extend(paths.chunks_exact(RECORDS_PER_PATH).flat_map(lessons));
     }
-    let table = Table::learn(&learnt).filter(|_| is_used(guiding, promise));
+    let table = Table::learn(&learnt);
     let upload = |table: &Table| stage.device.buffer_with("guide", &table.words());
     Ok(Some(Training {
         guide: table.as_ref().map(upload).transpose()?,
@@ -85,6 +84,17 @@ pub fn train(
         densities: table.as_ref().map_or(0, |t| t.densities().len()),
         seconds: start.elapsed().as_secs_f64(),
     }))
+}
+
+fn is_worth_a_try(settings: &Settings, guiding: Guiding) -> bool {
+    let pixels = u64::from(settings.width) * u64::from(settings.height);
+    // Counted to its end, so that a part of a long render knows that it is one.
+    let samples = settings.first_sample.saturating_add(settings.spp);
+    match guiding {
+        Guiding::Off => false,
+        Guiding::On => true,
+        Guiding::Auto => pixels >= SMALLEST_PICTURE && samples >= FEWEST_SAMPLES,
+    }
 }
 
 fn is_used(guiding: Guiding, forecast: Option<f64>) -> bool {
