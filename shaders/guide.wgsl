@@ -12,7 +12,7 @@
 #include "math/frame.wgsl"
 #include "math/sampling.wgsl"
 
-// Cells of the grid along an axis; words before its table; mirrors of src/render/guide/layout.rs.
+// Cells of the grid along an axis, and words before its table (src/render/guide/table.rs).
 const GUIDE_CELLS: u32 = 8u;
 const GUIDE_HEADER: u32 = 8u;
 
