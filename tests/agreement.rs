@@ -288,15 +288,20 @@ fn panorama() -> EnvironmentImage {
     }
 }
 
-/// Whatever samples of the picture count for against those of the BSDF.
-#[test]
-fn under_a_panorama() {
+fn lobes_under_a_panorama() -> Scene {
     let mut scene = all_lobes();
     scene.environment = Some(Environment {
         radiance: [1.0; 3],
         rotation: 0.7,
         image: Some(panorama().into()),
     });
+    scene
+}
+
+/// Whatever samples of the picture count for against those of the BSDF.
+#[test]
+fn under_a_panorama() {
+    let scene = lobes_under_a_panorama();
     let bench = Bench::new("under a panorama", &scene);
     let reference = bench.render(&settings(256, 1));
     let lights = with_integrator(&settings(256, 2), "path_lights");
@@ -317,16 +322,10 @@ fn under_a_panorama() {
 /// Guided paths find what others find, whatever has a diffuse part, and with every way to find lights.
 #[test]
 fn guided_paths() {
-    let mut under_a_panorama = all_lobes();
-    under_a_panorama.environment = Some(Environment {
-        radiance: [1.0; 3],
-        rotation: 0.7,
-        image: Some(panorama().into()),
-    });
     let scenes = [
         ("cornell box", load("cornell_box")),
         ("every lobe", all_lobes()),
-        ("under a panorama", under_a_panorama),
+        ("under a panorama", lobes_under_a_panorama()),
     ];
     for (name, scene) in scenes {
         let bench = Bench::new(name, &scene);

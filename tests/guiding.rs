@@ -2,27 +2,15 @@
 
 mod scene_common;
 
-use etendue::accel::BuildOptions;
 use etendue::gpu::Buffer;
-use etendue::render::{GpuScene, Guiding, Prepared, Settings, Stage, Training, train};
+use etendue::render::{Guiding, Settings, Training, train};
 use etendue::scene::Scene;
-use etendue::shader::ShaderLibrary;
-use scene_common::{device, load, square, with_integrator};
+use scene_common::{device, load, on_stage, square, with_integrator};
 
 /// What comes of training for a scene, with the words of the guide.
 fn train_for(scene: &Scene, settings: &Settings, guiding: Guiding) -> Option<(Training, Vec<u32>)> {
-    let prepared = Prepared::new(scene, settings.camera, &BuildOptions::default());
-    let prepared = prepared.expect("a prepared scene");
-    let gpu_scene = GpuScene::upload(device(), &prepared).expect("room on the device");
-    let library = ShaderLibrary::embedded();
-    let stage = Stage {
-        device: device(),
-        library: &library,
-        scene,
-        prepared: &prepared,
-        gpu_scene: &gpu_scene,
-    };
-    let training = train(stage, settings, guiding).expect("a training pass")?;
+    let training = on_stage(scene, settings, |stage| train(stage, settings, guiding));
+    let training = training.expect("a training pass")?;
     let words = |guide: &Buffer| device().read(guide, 0, guide.bytes() / 4).expect("words");
     let words = training.guide.as_ref().map_or(Vec::new(), words);
     Some((training, words))

@@ -56,23 +56,29 @@ pub fn render_prepared(scene: &Scene, prepared: &Prepared, settings: &Settings) 
     whole_film(renderer.expect("a compiled shader"), settings)
 }
 
-/// The same with paths that a training pass guides.
-pub fn render_guided(scene: &Scene, settings: &Settings) -> Film {
+/// What `work` gives for a scene on the device.
+pub fn on_stage<T>(scene: &Scene, settings: &Settings, work: impl FnOnce(Stage<'_>) -> T) -> T {
     let prepared = Prepared::new(scene, settings.camera, &BuildOptions::default());
     let prepared = prepared.expect("a prepared scene");
     let gpu_scene = GpuScene::upload(device(), &prepared).expect("room on the device");
     let library = ShaderLibrary::embedded();
-    let stage = Stage {
+    work(Stage {
         device: device(),
         library: &library,
         scene,
         prepared: &prepared,
         gpu_scene: &gpu_scene,
-    };
-    let training = train(stage, settings, Guiding::On).expect("a training pass");
-    let guide = training.and_then(|t| t.guide).expect("a guide");
-    let renderer = stage.guided_renderer(settings, Guidance::By(&guide));
-    whole_film(renderer.expect("a compiled shader"), settings)
+    })
+}
+
+/// Renders a scene by paths that a training pass guides.
+pub fn render_guided(scene: &Scene, settings: &Settings) -> Film {
+    on_stage(scene, settings, |stage| {
+        let training = train(stage, settings, Guiding::On).expect("a training pass");
+        let guide = training.and_then(|t| t.guide).expect("a guide");
+        let renderer = stage.guided_renderer(settings, Guidance::By(&guide));
+        whole_film(renderer.expect("a compiled shader"), settings)
+    })
 }
 
 fn whole_film(mut renderer: Renderer<'_>, settings: &Settings) -> Film {
