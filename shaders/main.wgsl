@@ -1,4 +1,5 @@
-// The kernel: each lane owns a pixel and adds samples to it until it has dispatch.target_count.
+// The kernel: each lane has a pixel and adds samples to it until it has dispatch.target_count, then goes to the
+// next pixel that is its own.
 //
 // An integrator (shaders/integrator/NAME.wgsl) defines a struct `Path`, whose L is the sample's
 // radiance when the path has ended, and
@@ -29,16 +30,15 @@ override TRACE_ELEMENTS: u32 = select(8u, 64u, HAS_ENVIRONMENT);
 @compute @workgroup_size(64, 1, 1)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
     stack_lane = lane;
-    let item = id.x / dispatch.lane_stride;
-    if (item * dispatch.lane_stride != id.x || item >= dispatch.item_count) {
+    var item = id.x / dispatch.lane_stride;
+    if (item * dispatch.lane_stride != id.x) {
         return;
     }
-    let position = film_position(dispatch.first_item + item);
-    if (position.x >= frame.width || position.y >= frame.end_row) {
+    var position = seek_pixel(&item);
+    if (item >= dispatch.item_count) {
         return;
     }
-    let index = (position.y - frame.first_row) * frame.width + position.x;
-    first_record = index * RECORDS_PER_PATH;
+    var index = film_index(position);
     var pixel = film[index];
     let count_before = pixel.count;
     var steps_before = steps;
@@ -53,7 +53,17 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
         }
         // Begin to draw a sample of the pixel's square.
         if (!on_its_way) {
-            if (pixel.count >= dispatch.target_count || no_room_for_sample()) {
+            if (pixel.count >= dispatch.target_count) {
+                film[index] = pixel;
+                item += dispatch.lanes;
+                position = seek_pixel(&item);
+                if (item >= dispatch.item_count) {
+                    break;
+                }
+                index = film_index(position);
+                pixel = film[index];
+            }
+            if (no_room_for_sample()) {
                 break;
             }
             steps_before = steps;
@@ -87,6 +97,24 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
             atomicAdd(&status.advanced, 1u);
         }
     }
+}
+
+// Goes on, from an item of the lane's own, to the first one whose pixel is on the film; past the last item
+// if there is none.
+fn seek_pixel(item: ptr<function, u32>) -> vec2u {
+    var position = film_position(dispatch.first_item + *item);
+    while (*item < dispatch.item_count && (position.x >= frame.width || position.y >= frame.end_row)) {
+        *item += dispatch.lanes;
+        position = film_position(dispatch.first_item + *item);
+    }
+    return position;
+}
+
+// Where a pixel is on the film, and its path in the records.
+fn film_index(position: vec2u) -> u32 {
+    let index = (position.y - frame.first_row) * frame.width + position.x;
+    first_record = index * RECORDS_PER_PATH;
+    return index;
 }
 
 // Two uniform numbers for the lens. They have a dimension that no path reaches, so that a lens shifts

@@ -61,7 +61,8 @@ struct Dispatch {
     lane_stride: u32,
     // Loop iterations that a lane may make, if COUNT_STEPS.
     step_limit: u32,
-    pad0: u32,
+    // Number of lanes that work: each has every lanes-th item.
+    lanes: u32,
 }
 
 // What a dispatch reports.

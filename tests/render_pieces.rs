@@ -60,3 +60,35 @@ fn the_picture_does_not_depend_on_the_pieces() {
     assert_eq!(measured.steps, whole.steps);
     assert!(whole.steps.nodes > 0 && whole.steps.pairs > 0);
 }
+
+/// A driver on the CPU gives a lane several pixels of a large piece, one of a small one.
+#[test]
+fn the_picture_does_not_depend_on_the_pixels_of_a_lane() {
+    let scene = gltf::load("scenes/cornell_box.gltf".as_ref(), &Default::default());
+    let scene = scene.expect("a scene");
+    let prepared = Prepared::new(&scene, 0, &BuildOptions::default()).expect("a flat scene");
+    let device = Device::open(None).expect("a Vulkan device");
+    let gpu_scene = GpuScene::upload(&device, &prepared).expect("memory");
+    let library = ShaderLibrary::embedded();
+    let render = |piece_tiles| {
+        let settings = Settings {
+            width: 93,
+            height: 75,
+            spp: 5,
+            piece_tiles: Some(piece_tiles),
+            pass_samples: Some(3),
+            ..Settings::default()
+        };
+        let renderer = Renderer::new(&device, &library, &scene, &prepared, &gpu_scene, &settings);
+        let mut renderer = renderer.expect("a kernel");
+        let flow = renderer.render(&mut |_, _| ControlFlow::Continue(()));
+        assert!(flow.expect("a render").is_continue());
+        renderer.film().expect("a film")
+    };
+    // 120 tiles: up to eight pixels a lane in one piece, one in pieces of 16.
+    let whole = render(120);
+    assert_eq!(whole.spp_range(), (5, 5));
+    for tiles in [16, 119] {
+        assert_eq!(bits(&render(tiles)), bits(&whole), "{tiles} tiles a piece");
+    }
+}

@@ -1,9 +1,9 @@
-//! How much to do next: pieces of about 100 ms, passes that grow.
+//! How much to do next: pieces of about 200 ms, passes that grow.
 
 use std::time::Duration;
 
 use super::settings::Settings;
-use crate::gpu::DeviceInfo;
+use crate::gpu::{DeviceInfo, DeviceKind};
 
 /// Lanes of a tile and of a workgroup.
 pub const TILE_LANES: u32 = 64;
@@ -13,12 +13,26 @@ pub const TILE_LANES: u32 = 64;
 const MAX_GROWN_PASS: u64 = 32;
 
 /// Wall time that one submission should take: short enough for any watchdog and for Ctrl-C.
-const PIECE: Duration = Duration::from_millis(100);
+const PIECE: Duration = Duration::from_millis(200);
 /// Wall time after which all pixels should have got their next samples.
 const PASS: Duration = Duration::from_secs(2);
 
 /// Tiles of a piece as long as nothing has been timed.
 const FIRST_TILES: u32 = 16;
+
+/// Pixels of a lane on a device whose lanes are few, and the fewest lanes for which that is worth while.
+const PIXELS_PER_LANE: u32 = 8;
+const FEWEST_LANES: u32 = 16 * TILE_LANES;
+
+/// Pixels that a lane draws one after the other. Lanes of a SIMD group end together only on average: the more paths
+/// each has, the less they wait for each other at the end (docs/kernel.md). A GPU wants many lanes more, and
+/// under an environment lanes had better stay together.
+pub fn pixels_per_lane(device: &DeviceInfo, has_environment: bool) -> u32 {
+    match device.kind {
+        DeviceKind::Cpu if !has_environment => PIXELS_PER_LANE,
+        _ => 1,
+    }
+}
 
 /// How far a render is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +56,7 @@ pub struct Pace {
     /// What the user fixed.
     pass_samples: Option<u64>,
     piece_tiles: Option<u32>,
+    pixels_per_lane: u32,
     /// Most work items of a dispatch in which one lane of each SIMD group works.
     most_items: u64,
     /// Samples that all pixels have.
@@ -56,13 +71,14 @@ pub struct Pace {
 
 impl Pace {
     /// At the beginning of a render.
-    pub fn new(settings: &Settings, device: &DeviceInfo) -> Self {
+    pub fn new(settings: &Settings, device: &DeviceInfo, pixels_per_lane: u32) -> Self {
         let groups = device.max_workgroups[0] / device.subgroup_size.max(2);
         Self {
             pixels: u64::from(settings.width) * u64::from(settings.height),
             spp: settings.spp,
             pass_samples: settings.pass_samples,
             piece_tiles: settings.piece_tiles,
+            pixels_per_lane,
             most_items: u64::from(groups.max(1)) * u64::from(TILE_LANES),
             spp_done: 0,
             samples_done: 0,
@@ -117,6 +133,12 @@ impl Pace {
             .min(u64::from(u32::MAX / TILE_LANES * TILE_LANES)) as u32
     }
 
+    /// Lanes that share so many work items, a multiple of [`TILE_LANES`].
+    pub fn lanes(&self, items: u32) -> u32 {
+        let wanted = items.div_ceil(self.pixels_per_lane).max(FEWEST_LANES);
+        wanted.min(items).next_multiple_of(TILE_LANES)
+    }
+
     /// Notes that so many samples, over all pixels, were drawn in this wall time.
     pub fn account(&mut self, drawn: u64, time: Duration) {
         let again = self.tried.min(drawn);
@@ -147,6 +169,31 @@ impl Pace {
 mod tests {
     use super::*;
 
+    #[test]
+    fn lanes_have_several_pixels_where_there_are_enough() {
+        let device = |kind| DeviceInfo {
+            kind,
+            subgroup_size: 8,
+            max_workgroups: [65_535; 3],
+            ..DeviceInfo::default()
+        };
+        let cpu = device(DeviceKind::Cpu);
+        assert_eq!(pixels_per_lane(&cpu, false), PIXELS_PER_LANE);
+        assert_eq!(pixels_per_lane(&cpu, true), 1);
+        assert_eq!(pixels_per_lane(&device(DeviceKind::Discrete), false), 1);
+        let lanes = |pixels: u32, items| Pace::new(&Settings::default(), &cpu, pixels).lanes(items);
+        assert_eq!(
+            [64, 1024, 4096].map(|items| lanes(1, items)),
+            [64, 1024, 4096]
+        );
+        assert_eq!(
+            [64, 1024, 4096].map(|items| lanes(8, items)),
+            [64, 1024, 1024]
+        );
+        // As many as need eight turns for all but the last.
+        assert_eq!(lanes(8, 100 * 1024 + 64), 12_864);
+    }
+
     /// However small the pieces that follow it, the trial's samples are counted once.
     #[test]
     fn a_trial_is_counted_once() {
@@ -155,6 +202,7 @@ mod tests {
             spp: 2,
             pass_samples: None,
             piece_tiles: None,
+            pixels_per_lane: 1,
             most_items: u64::MAX,
             spp_done: 0,
             samples_done: 0,

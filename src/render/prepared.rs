@@ -67,6 +67,11 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// Whether it has light from all around.
+    pub fn has_environment(&self) -> bool {
+        self.environment_light != layout::NONE
+    }
+
     /// Flattens a validated scene around one of its cameras and builds its BVH. Lights are chosen as suits
     /// their number.
     ///

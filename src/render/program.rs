@@ -182,9 +182,7 @@ pub fn constants(
         ),
         (
             "HAS_ENVIRONMENT",
-            Constant::Bool(
-                scene.environment_light != super::layout::NONE || asked(&["environment"]),
-            ),
+            Constant::Bool(scene.has_environment() || asked(&["environment"])),
         ),
         (
             "HAS_ENVIRONMENT_IMAGE",

@@ -1,4 +1,4 @@
-//! The progressive loop: pieces of about 100 ms, whatever the scene and the device.
+//! The progressive loop: pieces of about 200 ms, whatever the scene and the device.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use super::frame::base_frame;
 use super::gpu_scene::GpuScene;
 use super::guide::Guidance;
 use super::layout::{Dispatch, ElementCounts, FilmPixel, Status};
-use super::pace::{Pace, Progress, TILE_LANES};
+use super::pace::{Pace, Progress, TILE_LANES, pixels_per_lane};
 use super::prepared::Prepared;
 use super::program;
 use super::settings::Settings;
@@ -93,6 +93,11 @@ impl<'a> Renderer<'a> {
             .iter()
             .map(|b| (b.binding, binding_kind(b.kind)))
             .collect();
+        let pixels_per_lane = match loop_limit {
+            // Each lane has little room as it is.
+            Some(_) => 1,
+            None => pixels_per_lane(device.info(), on.prepared.has_environment()),
+        };
         let pipeline = stage("pipeline", || {
             device.pipeline(
                 &settings.integrator,
@@ -115,7 +120,7 @@ impl<'a> Renderer<'a> {
             overrides: compiled.overrides,
             warnings: compiled.warnings,
             loop_limit,
-            pace: Pace::new(settings, device.info()),
+            pace: Pace::new(settings, device.info(), pixels_per_lane),
             compile_time: Duration::ZERO,
         };
         let used: Vec<u32> = kinds.iter().map(|k| k.0).collect();
@@ -262,6 +267,7 @@ impl<'a> Renderer<'a> {
         target: u64,
     ) -> Result<(), RenderError> {
         let mut lane_stride = 1;
+        let lanes = self.pace.lanes(count);
         loop {
             let dispatch = Dispatch {
                 first_item: first,
@@ -271,11 +277,11 @@ impl<'a> Renderer<'a> {
                 first_sample_high: (self.settings.first_sample >> 32) as u32,
                 lane_stride,
                 step_limit: self.step_limit(lane_stride),
-                ..Default::default()
+                lanes,
             };
             self.upload_dispatch(&dispatch)?;
             let groups =
-                (u64::from(count) * u64::from(lane_stride)).div_ceil(u64::from(TILE_LANES));
+                (u64::from(lanes) * u64::from(lane_stride)).div_ceil(u64::from(TILE_LANES));
             self.device.dispatch(
                 &self.pipeline,
                 &self.bands[band].group,

@@ -32,7 +32,7 @@ pub struct Settings {
     pub stats: bool,
     /// Keep the names of functions and variables in the SPIR-V.
     pub debug_names: bool,
-    /// Tiles of 8 × 8 pixels in a piece of work, instead of as many as take about 100 ms. No bit of
+    /// Tiles of 8 × 8 pixels in a piece of work, instead of as many as take about 200 ms. No bit of
     /// the picture depends on it.
     pub piece_tiles: Option<u32>,
     /// Samples a pixel in a pass over the picture, instead of as many as take about 500 ms. No bit

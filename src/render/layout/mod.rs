@@ -121,8 +121,8 @@ shared_struct! {
         lane_stride: u32,
         /// Loop iterations that a lane may make, if they are counted.
         step_limit: u32,
-        /// Unused.
-        pad0: u32,
+        /// Number of lanes that work: each has every `lanes`-th item.
+        lanes: u32,
     }
 }
 
