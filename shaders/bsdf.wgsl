@@ -98,6 +98,8 @@ struct BsdfSample {
     pdf: f32,
     // Whether wi is the only direction of its lobe.
     delta: bool,
+    // What a guide made of the density, 1 without one; in the weight.
+    guided: f32,
 }
 
 fn bsdf_of(m: BsdfParameters, wo: vec3f) -> Bsdf {
@@ -233,7 +235,7 @@ fn reflection_pdf(b: Bsdf, wo: vec3f, wi: vec3f) -> f32 {
 }
 
 fn no_bsdf_sample() -> BsdfSample {
-    return BsdfSample(vec3f(0.0), vec3f(0.0), 0.0, false);
+    return BsdfSample(vec3f(0.0), vec3f(0.0), 0.0, false, 1.0);
 }
 
 // Draw a direction: `u` moves it inside a lobe, `u_lobe` chooses the lobe.
@@ -250,21 +252,21 @@ fn bsdf_sample(b: Bsdf, wo: vec3f, u: vec2f, u_lobe: f32) -> BsdfSample {
     below += b.p_sheen;
     if (HAS_SPECULAR && in_specular) {
         if (specular_is_delta(b)) {
-            return BsdfSample(vec3f(-wo.xy, wo.z), specular_reflectance(b, wo.z) / b.p_specular, 0.0, true);
+            return BsdfSample(vec3f(-wo.xy, wo.z), specular_reflectance(b, wo.z) / b.p_specular, 0.0, true, 1.0);
         }
         wi = ggx_sample(b.alpha, wo, u);
     } else if (HAS_TRANSMISSION && in_transmission) {
         if (bsdf_transmission_is_delta(b)) {
             wi = transmission_direction(wo, b.eta, b.thin);
             let weight = b.transmission * (passing_share(b, wo.z) * radiance_scale(b) / b.p_transmission);
-            return BsdfSample(wi, weight, 0.0, true);
+            return BsdfSample(wi, weight, 0.0, true, 1.0);
         }
         wi = transmission_sample(b.alpha, b.eta, b.thin, wo, u);
     } else if (HAS_CLEARCOAT && in_coat) {
         if (clearcoat_is_delta(b.coat)) {
             let weight = b.coat.strength * clearcoat_fresnel(dot(wo, b.coat.normal)) / b.p_coat;
             wi = clearcoat_mirror(b.coat, wo);
-            return BsdfSample(vec3f(wi.xy, max(wi.z, 0.0)), vec3f(weight), 0.0, true);
+            return BsdfSample(vec3f(wi.xy, max(wi.z, 0.0)), vec3f(weight), 0.0, true, 1.0);
         }
         wi = clearcoat_sample(b.coat, wo, u);
     } else if (HAS_SHEEN && in_sheen) {
@@ -290,7 +292,7 @@ fn bsdf_sample(b: Bsdf, wo: vec3f, u: vec2f, u_lobe: f32) -> BsdfSample {
     if (wi.z == 0.0 || !(pdf > 0.0)) {
         return no_bsdf_sample();
     }
-    return BsdfSample(wi, bsdf_eval(b, wo, wi) / (pdf * guided), pdf, false);
+    return BsdfSample(wi, bsdf_eval(b, wo, wi) / (pdf * guided), pdf, false, guided);
 }
 
 // Whether bsdf_sample draws from the diffuse lobe.

@@ -109,19 +109,28 @@ fn guided_cosine(g: Guide, u: vec2f) -> vec3f {
     return vec3f(up.x * g.turn.x - up.y * g.turn.y, up.x * g.turn.y + up.y * g.turn.x, up.z);
 }
 
-// Notes what a vertex chose: the square of its guide's 8 by 8 in which `u` is, and what light that comes
-// from there is multiplied by.
-fn record_vertex(depth: u32, position: vec3f, normal: vec3f, u: vec2f, beta: f32) {
+// Notes how a path goes on from a vertex: what its roulette went by, and what light that is met from there
+// on is multiplied by.
+fn record_vertex(depth: u32, carried: f32, beta: f32) {
     if (depth < RECORDS_PER_PATH) {
-        let square = floor_to_u32(8.0 * u.x) + 8u * floor_to_u32(8.0 * u.y);
-        path_records[first_record + depth] = PathRecord(position, 64u * guide_face(normal) + square, beta, 0.0, 0u, 0u);
+        path_records[first_record + depth].carried = carried;
+        path_records[first_record + depth].beta = beta;
     }
 }
 
-// Notes that a vertex has nothing to teach.
+// Notes what the diffuse lobe chose there: the square of its guide's 8 by 8 in which `u` is.
+fn record_square(depth: u32, position: vec3f, normal: vec3f, u: vec2f) {
+    if (depth < RECORDS_PER_PATH) {
+        let square = floor_to_u32(8.0 * u.x) + 8u * floor_to_u32(8.0 * u.y);
+        path_records[first_record + depth].position = position;
+        path_records[first_record + depth].square = 64u * guide_face(normal) + square;
+    }
+}
+
+// Notes that a path has come to a vertex, of which there is nothing to say yet.
 fn record_nothing(depth: u32) {
     if (depth < RECORDS_PER_PATH) {
-        path_records[first_record + depth].square = NONE;
+        path_records[first_record + depth] = PathRecord(vec3f(0.0), NONE, 0.0, 0.0, 0.0, 0u);
     }
 }
 
@@ -134,5 +143,5 @@ fn record_gathered(depth: u32, gathered: f32) {
 
 // Notes how many vertices a path has, and all that it gathered.
 fn record_path(vertices: u32, gathered: f32) {
-    path_records[first_record] = PathRecord(vec3f(0.0), vertices, 0.0, gathered, 0u, 0u);
+    path_records[first_record] = PathRecord(vec3f(0.0), vertices, 0.0, gathered, 0.0, 0u);
 }

@@ -4,9 +4,11 @@
 #include "bsdf.wgsl"
 #include "medium.wgsl"
 
-// Depth (edges) from which on paths may end by roulette, and the largest chance to go on.
+// Depth (edges) from which on any path may end by roulette, and the largest chance to go on.
 override ROULETTE_DEPTH: u32 = 5u;
 override ROULETTE_MAX_SURVIVAL: f32 = 0.95;
+// The least one: no survivor weighs more than 1 over this.
+const LEAST_SURVIVAL: f32 = 1e-4;
 
 // How many samples one of an environment's picture counts for, against one of the BSDF, where all of that is diffuse: it is
 // chosen by light and cosine together, so it is mostly the better one (docs/kernel.md).
@@ -154,9 +156,14 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
     if (HAS_MEDIA && sample.wi.z < 0.0) {
         (*path).media = crossing.media;
     }
-    (*path).beta = beta * sample.weight * roulette((*path).depth, beta * sample.weight, choice.y);
-    if (RECORDS_PATHS && draws_diffuse(bsdf, choice.x)) {
-        record_vertex((*path).depth, surface.position, surface.shading.z, u, luminance((*path).beta));
+    beta *= sample.weight;
+    let unguided = beta * sample.guided;
+    (*path).beta = beta * roulette((*path).depth, unguided, choice.y);
+    if (RECORDS_PATHS) {
+        record_vertex((*path).depth, mean_component(unguided), luminance((*path).beta));
+        if (draws_diffuse(bsdf, choice.x)) {
+            record_square((*path).depth, surface.position, surface.shading.z, u);
+        }
     }
     let counts = environment_samples(bsdf);
     (*path).last = LastBounce(surface.position, surface.shading.z, sample.pdf, sample.delta, both_sides, counts);
@@ -188,12 +195,23 @@ fn pass_invisible(path: ptr<function, Path>, beta: vec3f, s: Surface, media: Med
     (*path).ray = spawn_ray(s, -s.wo);
 }
 
-// Ends paths that carry little (0), and makes the survivors carry their share.
-fn roulette(depth: u32, beta: vec3f, u: f32) -> f32 {
-    if (depth < ROULETTE_DEPTH) {
+// Ends paths that carry little (0), and makes the survivors carry their share. What a path carries is its
+// throughput as it would be without a guide: a guided one is small where much light is.
+//
+// Where a training pass found a threshold (src/render/guide/roulette.rs), paths that carry less may end from the
+// first vertex on, and the survivors carry the threshold.
+fn roulette(depth: u32, carried: vec3f, u: f32) -> f32 {
+    // What is recorded shows what becomes of paths that do not end.
+    let is_late = depth >= select(ROULETTE_DEPTH, max(ROULETTE_DEPTH, RECORDS_PER_PATH), RECORDS_PATHS);
+    var share: f32;
+    if (HAS_ROULETTE_THRESHOLD) {
+        share = mean_component(carried) / frame.roulette_threshold;
+    } else if (is_late) {
+        share = max_component(carried);
+    } else {
         return 1.0;
     }
-    let survival = min(min(max_component(beta), 1.0), ROULETTE_MAX_SURVIVAL);
+    let survival = clamp(share, LEAST_SURVIVAL, select(1.0, ROULETTE_MAX_SURVIVAL, is_late));
     return select(0.0, 1.0 / survival, u < survival);
 }
 

@@ -36,7 +36,8 @@ struct Frame {
     punctual_count: u32,
     // The row after the last one of this band.
     end_row: u32,
-    pad0: u32,
+    // Throughput below which paths may end (path.wgsl), if HAS_ROULETTE_THRESHOLD.
+    roulette_threshold: f32,
     // The solids around the camera (medium.wgsl).
     media: vec4u,
     // Radius of the lens, 0 for a pinhole, and 1 / distance of the plane in focus.
@@ -276,8 +277,9 @@ struct PathRecord {
     beta: f32,
     // Luminance of what the path had gathered, the vertex's own light sample included; of the path all of it.
     gathered: f32,
+    // What the vertex's roulette goes by (path.wgsl), or 0 if it has none.
+    carried: f32,
     pad0: u32,
-    pad1: u32,
 }
 
 const NONE: u32 = 0xffffffffu;

@@ -17,8 +17,8 @@ use glam::{DVec3, Vec3, Vec4};
 use scene_common::builder::Icosphere;
 use scene_common::statistics::{MAX_Z, compare_films};
 use scene_common::{
-    SceneBuilder, effort, lamp, load, render, render_guided, square, with_integrator,
-    without_roulette,
+    SceneBuilder, effort, lamp, load, render, render_guided, render_with_roulette, square,
+    with_integrator, without_roulette,
 };
 
 /// False alarms of a comparison's tiles together.
@@ -319,7 +319,8 @@ fn under_a_panorama() {
     check_samplers_and_roulette(&bench, &reference);
 }
 
-/// Guided paths find what others find, whatever has a diffuse part, and with every way to find lights.
+/// Guided paths, and paths that end where they carry less than a threshold, find what others find, whatever has a
+/// diffuse part; guided ones with every way to find lights.
 #[test]
 fn guided_paths() {
     let scenes = [
@@ -334,5 +335,7 @@ fn guided_paths() {
         bench.assert_agree("guided", &reference, &guided);
         let bsdf = with_integrator(&settings(1024, 3), "path_bsdf");
         bench.assert_agree("guided, path_bsdf", &reference, &bench.render_guided(&bsdf));
+        let early = render_with_roulette(&scene, &settings(512, 4), 0.7);
+        bench.assert_agree("threshold", &reference, &bench.without_lamps(early));
     }
 }

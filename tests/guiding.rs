@@ -33,6 +33,7 @@ fn parts_of_a_render_have_the_same_guide() {
     let (again, words_again) = train_for(&scene, &part, Guiding::On).expect("a guide");
     assert!(words.len() > 10_000 && words == words_again);
     assert_eq!(training.forecast, again.forecast);
+    assert!(training.roulette.is_some() && training.roulette == again.roulette);
 }
 
 #[test]
@@ -73,4 +74,26 @@ fn paths_are_guided_where_that_is_forecast_to_pay() {
         assert!(auto("cornell_box", &untried).is_none());
     }
     assert!(train_for(&load("cornell_box"), &settings, Guiding::Off).is_none());
+}
+
+#[test]
+fn paths_end_by_a_threshold_that_was_learnt() {
+    let learnt = |name: &str, settings: &Settings| {
+        let found = train_for(&load(name), settings, Guiding::On);
+        found.and_then(|(training, _)| training.roulette)
+    };
+    let settings = square(128, 16, 8);
+    let roulette = learnt("cornell_box", &settings).expect("a threshold");
+    assert!(
+        (0.05..0.5).contains(&roulette.threshold) && roulette.forecast < 0.95,
+        "{roulette:?}"
+    );
+    // A user who says how paths end is right.
+    for name in ["ROULETTE_DEPTH", "ROULETTE_MAX_SURVIVAL"] {
+        let own = Settings {
+            overrides: vec![(name.into(), 1.0)],
+            ..settings.clone()
+        };
+        assert_eq!(learnt("cornell_box", &own), None);
+    }
 }

@@ -22,6 +22,10 @@ fn max_component(v: vec3f) -> f32 {
     return max(v.x, max(v.y, v.z));
 }
 
+fn mean_component(v: vec3f) -> f32 {
+    return dot(v, vec3f(1.0 / 3.0));
+}
+
 fn luminance(c: vec3f) -> f32 {
     return dot(c, vec3f(0.2126, 0.7152, 0.0722));
 }

@@ -69,9 +69,10 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     let aovs = aov::plan(args, stage, &mut settings)?;
     let training = timed(&mut time.guide, || train(stage, &settings, args.guiding))?;
     warn_of_guide(args, training.as_ref(), &mut warnings);
-    let guide = training.as_ref().and_then(|t| t.guide.as_ref());
-    let mut renderer =
-        stage.guided_renderer(&settings, guide.map_or(Guidance::None, Guidance::By))?;
+    let guidance = training
+        .as_ref()
+        .map_or(Guidance::default(), Training::guidance);
+    let mut renderer = stage.guided_renderer(&settings, guidance)?;
     time.compile = renderer.compile_time().as_secs_f64();
     warnings.add_all(&renderer.warnings());
     if outputs.only_shader {

@@ -9,7 +9,7 @@ use super::film::Film;
 use super::frame::base_frame;
 use super::gpu_scene::GpuScene;
 use super::guide::Guidance;
-use super::layout::{Dispatch, ElementCounts, FilmPixel, Status};
+use super::layout::{Dispatch, ElementCounts, FilmPixel, Frame, Status};
 use super::pace::{Pace, Progress, TILE_LANES, pixels_per_lane};
 use super::prepared::Prepared;
 use super::program;
@@ -69,7 +69,7 @@ impl<'a> Renderer<'a> {
             prepared,
             gpu_scene,
         };
-        Self::on(device, stage, settings, Guidance::None)
+        Self::on(device, stage, settings, Guidance::default())
     }
 
     /// The same on a stage, of which it keeps the device, with a guide, or to learn one.
@@ -136,7 +136,10 @@ impl<'a> Renderer<'a> {
         guidance: Guidance<'_>,
         used: &[u32],
     ) -> Result<(), RenderError> {
-        let base = base_frame(on.scene, on.prepared, &self.settings);
+        let base = Frame {
+            roulette_threshold: guidance.roulette.unwrap_or(0.0),
+            ..base_frame(on.scene, on.prepared, &self.settings)
+        };
         let limit = self.device.info().max_storage_buffer_range;
         for band in bands(self.settings.width, self.settings.height, limit)? {
             let frame = self.device.buffer_with("frame", &[band.frame(base)])?;
@@ -154,7 +157,7 @@ impl<'a> Renderer<'a> {
             let buffers: Vec<_> = own
                 .into_iter()
                 .chain(on.gpu_scene.bindings())
-                .chain(guidance.binding())
+                .chain(guidance.bindings())
                 .filter(|(binding, _)| used.contains(binding))
                 .map(|(binding, buffer)| (binding, buffer, None))
                 .collect();

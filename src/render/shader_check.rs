@@ -99,6 +99,7 @@ pub fn constants(on: bool, structure: Structure) -> Vec<(&'static str, Constant)
         ("COUNT_RAYS", Constant::Bool(on)),
         ("HAS_GUIDE", Constant::Bool(on)),
         ("RECORDS_PATHS", Constant::Bool(on)),
+        ("HAS_ROULETTE_THRESHOLD", Constant::Bool(on)),
     ]);
     constants
 }

@@ -33,7 +33,7 @@ impl<'a> Stage<'a> {
     /// # Errors
     /// As [`Renderer::new`].
     pub fn renderer(&self, settings: &Settings) -> Result<Renderer<'a>, RenderError> {
-        self.guided_renderer(settings, Guidance::None)
+        self.guided_renderer(settings, Guidance::default())
     }
 
     /// The same with a guide, or to learn one.
@@ -53,14 +53,14 @@ impl<'a> Stage<'a> {
     /// # Errors
     /// Any shader error.
     pub fn compile(&self, settings: &Settings) -> Result<Vec<String>, RenderError> {
-        let files = self.virtual_files(settings, Guidance::None)?;
+        let files = self.virtual_files(settings, Guidance::default())?;
         let (_, compiled) = program::build(self.library, &files, settings)?;
         Ok(compiled.overrides.into_iter().map(|o| o.name).collect())
     }
 
     /// Whether paths of the integrator can leave records for a guide (`record_vertex` of `shaders/guide.wgsl`).
     pub(super) fn records_paths(&self, settings: &Settings) -> Result<bool, RenderError> {
-        let files = self.virtual_files(settings, Guidance::None)?;
+        let files = self.virtual_files(settings, Guidance::default())?;
         let composed = stage("compose", || {
             compose(self.library, &files, program::ENTRY_FILE)
         })?;

@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::scene_common::builder::Icosphere;
 use super::scene_common::statistics::assert_between;
 use super::scene_common::{SceneBuilder, assert_radiance, lambert, load, render, square};
-use super::scene_common::{with_integrator, without_roulette};
+use super::scene_common::{render_with_roulette, with_integrator, without_roulette};
 
 /// A closed box that emits 1 and reflects ρ, by Lambert's law, seen from inside.
 fn furnace(rho: f32) -> Scene {
@@ -73,6 +73,34 @@ fn roulette_changes_no_mean() {
         let film = render(&scene, &settings);
         assert_radiance(name, &film, answer(0.8, 40), 0.008);
     }
+}
+
+/// In a furnace of reflectance ½ a path carries 2^-k after k edges, so with a threshold t it has a next one with the
+/// chance min(1, 2^-k / t).
+#[test]
+fn a_threshold_shortens_paths_as_far_as_it_says() {
+    let scene = furnace(0.5);
+    let depth = 12;
+    let settings = Settings {
+        stats: true,
+        overrides: vec![("ROULETTE_MAX_SURVIVAL".into(), 1.0)],
+        ..square(16, 256, depth)
+    };
+    for threshold in [1e-30, 0.01, 0.5, 2.0] {
+        let film = render_with_roulette(&scene, &settings, threshold);
+        let what = format!("threshold {threshold}");
+        assert_radiance(&what, &film, answer(0.5, depth), 0.005);
+        let paths = film.samples() as f64;
+        let rays: u64 = film.pixels.iter().map(|p| u64::from(p.closest_rays)).sum();
+        let goes_on = |k: u32| (0.5_f64.powi(k as i32) / f64::from(threshold)).min(1.0);
+        let expected = 1.0 + (1..depth).map(goes_on).sum::<f64>();
+        // Lengths differ by less than 2 edges.
+        let error = (rays as f64 / paths - expected).abs();
+        assert!(error <= 5.0 * 2.0 / paths.sqrt(), "{what}: {error}");
+    }
+    // Hardly any path goes on, but none of them weighs more than 10,000.
+    let film = render_with_roulette(&scene, &settings, 1e30);
+    assert!((0..film.pixels.len()).all(|i| film.mean(i)[0] < answer(0.5, depth) * 1e4));
 }
 
 #[test]

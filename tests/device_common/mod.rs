@@ -80,6 +80,7 @@ impl Setup {
             "COUNT_RAYS",
             "HAS_GUIDE",
             "RECORDS_PATHS",
+            "HAS_ROULETTE_THRESHOLD",
         ] {
             constants.insert(name, Constant::Bool(false));
         }

@@ -75,8 +75,21 @@ pub fn on_stage<T>(scene: &Scene, settings: &Settings, work: impl FnOnce(Stage<'
 pub fn render_guided(scene: &Scene, settings: &Settings) -> Film {
     on_stage(scene, settings, |stage| {
         let training = train(stage, settings, Guiding::On).expect("a training pass");
-        let guide = training.and_then(|t| t.guide).expect("a guide");
-        let renderer = stage.guided_renderer(settings, Guidance::By(&guide));
+        let training = training.expect("a training pass");
+        assert!(training.guide.is_some());
+        let renderer = stage.guided_renderer(settings, training.guidance());
+        whole_film(renderer.expect("a compiled shader"), settings)
+    })
+}
+
+/// Renders a scene by paths that may end where they carry less than a threshold.
+pub fn render_with_roulette(scene: &Scene, settings: &Settings, threshold: f32) -> Film {
+    let guidance = Guidance {
+        roulette: Some(threshold),
+        ..Guidance::default()
+    };
+    on_stage(scene, settings, |stage| {
+        let renderer = stage.guided_renderer(settings, guidance);
         whole_film(renderer.expect("a compiled shader"), settings)
     })
 }

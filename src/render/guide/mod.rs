@@ -4,10 +4,12 @@
 mod density;
 mod forecast;
 mod lesson;
+mod roulette;
 mod table;
 mod training;
 
 pub use lesson::Lesson;
+pub use roulette::Roulette;
 pub use table::Table as GuideTable;
 pub use training::{Training, train};
 
@@ -53,32 +55,32 @@ impl std::str::FromStr for Guiding {
     }
 }
 
-/// What a kernel has to do with guiding.
-#[derive(Clone, Copy)]
-pub enum Guidance<'a> {
-    /// Nothing.
-    None,
-    /// It leaves records of its paths in this buffer.
-    Records(&'a Buffer),
-    /// It is guided by this one.
-    By(&'a Buffer),
+/// What a kernel has to do with training; nothing by default.
+#[derive(Clone, Copy, Default)]
+pub struct Guidance<'a> {
+    /// It is guided by this buffer.
+    pub guide: Option<&'a Buffer>,
+    /// It leaves records of its paths in this one.
+    pub records: Option<&'a Buffer>,
+    /// Throughput below which its paths may end ([`Training::roulette`]).
+    pub roulette: Option<f32>,
 }
 
 impl<'a> Guidance<'a> {
-    /// The buffer with its binding.
-    pub fn binding(self) -> Option<(u32, &'a Buffer)> {
-        match self {
-            Guidance::None => None,
-            Guidance::By(buffer) => Some((11, buffer)),
-            Guidance::Records(buffer) => Some((12, buffer)),
-        }
+    /// The buffers with their bindings.
+    pub fn bindings(self) -> impl Iterator<Item = (u32, &'a Buffer)> {
+        let guide = self.guide.map(|buffer| (11, buffer));
+        guide
+            .into_iter()
+            .chain(self.records.map(|buffer| (12, buffer)))
     }
 
-    /// The generated constants `HAS_GUIDE` and `RECORDS_PATHS`.
-    pub fn constants(self) -> [(&'static str, bool); 2] {
+    /// The generated constants that say so.
+    pub fn constants(self) -> [(&'static str, bool); 3] {
         [
-            ("HAS_GUIDE", matches!(self, Guidance::By(_))),
-            ("RECORDS_PATHS", matches!(self, Guidance::Records(_))),
+            ("HAS_GUIDE", self.guide.is_some()),
+            ("RECORDS_PATHS", self.records.is_some()),
+            ("HAS_ROULETTE_THRESHOLD", self.roulette.is_some()),
         ]
     }
 }

@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use super::forecast::forecast;
-use super::lesson::{RECORDS_PER_PATH, lessons};
+use super::lesson::{Lesson, RECORDS_PER_PATH, lessons};
+use super::roulette::{self, Roulette};
 use super::table::Table;
 use super::{Guidance, PathRecord};
 use crate::gpu::Buffer;
@@ -17,12 +18,12 @@ const SEED: u32 = 0x6a09_e667;
 const SMALLEST_PICTURE: u64 = 1 << 16;
 const FEWEST_SAMPLES: u64 = 4;
 /// Pixels of the training picture for one of the picture, and bounds on their number.
-const PIXEL_SHARE: f64 = 0.25;
-const PIXELS: (f64, f64) = (16_384.0, 131_072.0);
-/// Passes over the training picture, if the first one promises that guiding pays.
-const PASSES: u64 = 3;
+const PIXEL_SHARE: f64 = 0.125;
+const PIXELS: (f64, f64) = (8_192.0, 65_536.0);
+/// Passes over the training picture. All but the first two follow only if guiding is promised to pay.
+const PASSES: u64 = 6;
 /// The largest forecast with which a guide is used: guided paths are longer, as fewer leave the scene.
-const LARGEST_FORECAST: f64 = 0.8;
+const LARGEST_FORECAST: f64 = 0.85;
 
 /// What came of a training pass.
 pub struct Training {
@@ -32,6 +33,8 @@ pub struct Training {
     pub forecast: Option<f64>,
     /// Densities that were learnt.
     pub densities: usize,
+    /// Where paths had better end; none if the shader's overrides say that.
+    pub roulette: Option<Roulette>,
     /// Wall time of drawing and learning.
     pub seconds: f64,
 }
@@ -61,20 +64,25 @@ pub fn train(
     let records = stage
         .device
         .buffer("path records", count * size_of::<PathRecord>() as u64)?;
-    let mut renderer = stage.guided_renderer(&small, Guidance::Records(&records))?;
+    let recording = Guidance {
+        records: Some(&records),
+        ..Guidance::default()
+    };
+    let mut renderer = stage.guided_renderer(&small, recording)?;
     let start = Instant::now();
-    let mut learnt = Vec::new();
-    let mut promise = None;
-    for pass in 1..=PASSES {
+    let mut draw = |pass: u64| -> Result<Vec<PathRecord>, RenderError> {
         renderer.render_to(pass)?;
-        let paths: Vec<PathRecord> = stage.device.read(&records, 0, count)?;
-        if pass == 1 {
-            promise = promise_of(&paths, small.width as usize);
+        Ok(stage.device.read(&records, 0, count)?)
+    };
+    let first = [draw(1)?, draw(2)?];
+    let first = [&first[0][..], &first[1]];
+    let promise = promise_of(first, small.width as usize);
+    let mut learnt = Vec::new();
+    if is_used(guiding, promise) {
+        first.iter().for_each(|paths| learn(&mut learnt, paths));
+        for pass in 3..=PASSES {
+            learn(&mut learnt, &draw(pass)?);
         }
-        if !is_used(guiding, promise) {
-            break;
-        }
-        learnt.extend(paths.chunks_exact(RECORDS_PER_PATH).flat_map(lessons));
     }
     let table = Table::learn(&learnt);
     let upload = |table: &Table| stage.device.buffer_with("guide", &table.words());
@@ -82,8 +90,40 @@ pub fn train(
         guide: table.as_ref().map(upload).transpose()?,
         forecast: promise,
         densities: table.as_ref().map_or(0, |t| t.densities().len()),
+        roulette: roulette_of(first, &small, promise.filter(|_| table.is_some())),
         seconds: start.elapsed().as_secs_f64(),
     }))
+}
+
+/// The roulette for paths with a guide of this forecast, or without one; none where the user has a rule of their own.
+fn roulette_of(
+    first: [&[PathRecord]; 2],
+    small: &Settings,
+    guided: Option<f64>,
+) -> Option<Roulette> {
+    let is_set = |(name, _): &(String, f64)| name.starts_with("ROULETTE_");
+    if small.overrides.iter().any(is_set) {
+        return None;
+    }
+    let found = roulette::best(first, small.width as usize)?;
+    // The best chance to go on is in proportion to what is carried over the standard deviation.
+    let threshold = found.threshold * guided.map_or(1.0, |forecast| forecast.min(1.0).sqrt());
+    Some(Roulette { threshold, ..found })
+}
+
+fn learn(lessons_so_far: &mut Vec<Lesson>, records: &[PathRecord]) {
+    lessons_so_far.extend(records.chunks_exact(RECORDS_PER_PATH).flat_map(lessons));
+}
+
+impl Training {
+    /// What it tells a kernel.
+    pub fn guidance(&self) -> Guidance<'_> {
+        Guidance {
+            guide: self.guide.as_ref(),
+            records: None,
+            roulette: self.roulette.map(|r| r.threshold as f32),
+        }
+    }
 }
 
 fn is_worth_a_try(settings: &Settings, guiding: Guiding) -> bool {
@@ -101,10 +141,11 @@ fn is_used(guiding: Guiding, forecast: Option<f64>) -> bool {
     guiding == Guiding::On || forecast.is_some_and(|f| f < LARGEST_FORECAST)
 }
 
-/// What a guide made of half of the paths, every other one of the picture's, would do for the other half.
-fn promise_of(records: &[PathRecord], width: usize) -> Option<f64> {
-    let paths = || records.chunks_exact(RECORDS_PER_PATH).enumerate();
-    let half = |odd: usize| paths().filter(move |(i, _)| (i % width + i / width) % 2 == odd);
+/// What a guide made of half of the paths, those of every other pixel, would do for the other half.
+fn promise_of(records: [&[PathRecord]; 2], width: usize) -> Option<f64> {
+    let paths = || records.map(|pass| pass.chunks_exact(RECORDS_PER_PATH).enumerate());
+    let both = || paths().into_iter().flatten();
+    let half = |odd: usize| both().filter(move |(i, _)| (i % width + i / width) % 2 == odd);
     let learnt: Vec<_> = half(0).flat_map(|(_, path)| lessons(path)).collect();
     forecast(&Table::learn(&learnt)?, half(1).map(|(_, path)| path))
 }
@@ -163,6 +204,6 @@ mod tests {
             assert!(small.check().is_ok());
         }
         let small = training_settings(&Settings::default());
-        assert_eq!((small.width, small.height), (256, 256));
+        assert_eq!((small.width, small.height), (181, 181));
     }
 }

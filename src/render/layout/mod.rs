@@ -89,8 +89,8 @@ shared_struct! {
         punctual_count: u32,
         /// The row after the last one of the band.
         end_row: u32,
-        /// Unused.
-        pad0: u32,
+        /// Throughput below which paths may end, if `HAS_ROULETTE_THRESHOLD`.
+        roulette_threshold: f32,
         /// The solids around the camera: indices of materials + 1, or 0.
         media: [u32; 4],
         /// Radius of the lens, metres; 0 for a pinhole.
@@ -187,10 +187,10 @@ shared_struct! {
         beta: f32,
         /// Luminance gathered up to the vertex, or by the path.
         gathered: f32,
+        /// What the vertex's roulette goes by: the mean component of its throughput; 0 where there is none.
+        carried: f32,
         /// Unused.
         pad0: u32,
-        /// Unused.
-        pad1: u32,
     }
 }
 
