@@ -2,8 +2,8 @@
 
 use super::error::RenderError;
 
-/// Settings of one render. Together with the scene, the shaders and the device they decide every
-/// bit of the picture.
+/// Settings of one render. Together with the scene, the shaders, the device and the guidance, which follows from
+/// these ([`train`](super::train)), they decide every bit of the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Columns of the picture, 1 to 65,536.
@@ -35,7 +35,7 @@ pub struct Settings {
     /// Tiles of 8 × 8 pixels in a piece of work, instead of as many as take about 200 ms. No bit of
     /// the picture depends on it.
     pub piece_tiles: Option<u32>,
-    /// Samples a pixel in a pass over the picture, instead of as many as take about 500 ms. No bit
+    /// Samples a pixel in a pass over the picture, instead of as many as take about two seconds. No bit
     /// of the picture depends on it.
     pub pass_samples: Option<u64>,
     /// Read the acceleration structure in 64-bit integers, which the device must have

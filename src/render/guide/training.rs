@@ -40,7 +40,7 @@ pub struct Training {
 }
 
 /// Draws a small picture by the integrator of the settings, and makes a guide of what its paths find, where that pays or is
-/// asked for. None where nothing can be learnt (an integrator whose paths leave no records, paths without a second
+/// asked for, and a rule by which they end. None where nothing can be learnt (an integrator whose paths leave no records, paths without a second
 /// bounce), or the picture is not worth a try.
 ///
 /// The guide depends on the scene, the camera, the picture's size and the shaders, not on the number of samples or the
