@@ -9,7 +9,9 @@ use scene_common::{device, load, on_stage, square, with_integrator};
 
 /// What comes of training for a scene, with the words of the guide.
 fn train_for(scene: &Scene, settings: &Settings, guiding: Guiding) -> Option<(Training, Vec<u32>)> {
-    let training = on_stage(scene, settings, |stage| train(stage, settings, guiding));
+    let training = on_stage(scene, settings, |stage| {
+        train(stage, settings, guiding, &mut |_, _| {})
+    });
     let training = training.expect("a training pass")?;
     let words = |guide: &Buffer| device().read(guide, 0, guide.bytes() / 4).expect("words");
     let words = training.guide.as_ref().map_or(Vec::new(), words);

@@ -15,6 +15,7 @@ use super::lights_report::LightsReport;
 use super::message::{self, Warnings};
 use super::metadata::metadata;
 use super::outputs::Outputs;
+use super::progress::ProgressLine;
 use super::report::{Report, Seconds, timed};
 use super::{camera, environment, parse, settings, shaders};
 use crate::accel::BuildOptions;
@@ -67,7 +68,13 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
         gpu_scene: &gpu_scene,
     };
     let aovs = aov::plan(args, stage, &mut settings)?;
-    let training = timed(&mut time.guide, || train(stage, &settings, args.guiding))?;
+    let learn = || {
+        let mut line = ProgressLine::new("guide", Training::SAMPLES, args.quiet);
+        train(stage, &settings, args.guiding, &mut |r, p| {
+            line.update(r, p)
+        })
+    };
+    let training = timed(&mut time.guide, learn)?;
     warn_of_guide(args, training.as_ref(), &mut warnings);
     let guidance = training
         .as_ref()

@@ -199,7 +199,8 @@ impl<'a> Renderer<'a> {
             .map(|_| ())
     }
 
-    fn draw_until(
+    /// The same; as [`Self::render`], but that nothing is tried out first.
+    pub(super) fn draw_until(
         &mut self,
         spp: u64,
         on_progress: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,

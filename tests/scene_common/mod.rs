@@ -74,7 +74,8 @@ pub fn on_stage<T>(scene: &Scene, settings: &Settings, work: impl FnOnce(Stage<'
 /// Renders a scene by paths that a training pass guides.
 pub fn render_guided(scene: &Scene, settings: &Settings) -> Film {
     on_stage(scene, settings, |stage| {
-        let training = train(stage, settings, Guiding::On).expect("a training pass");
+        let training =
+            train(stage, settings, Guiding::On, &mut |_, _| {}).expect("a training pass");
         let training = training.expect("a training pass");
         assert!(training.guide.is_some());
         let renderer = stage.guided_renderer(settings, training.guidance());

@@ -64,8 +64,9 @@ def started(row):
 
 def about(report):
     s = report["settings"]
+    roulette = "" if s["guiding"] == "off" else " (étendue: learnt)"
     return (
-        f"{s['size']}×{s['size']}, at most {s['max_depth']} edges a path, roulette from bounce 5, box filter, "
+        f"{s['size']}×{s['size']}, at most {s['max_depth']} edges a path, roulette from bounce 5{roulette}, box filter, "
         f"{s['spp']} samples a pixel, {s['threads']} threads; medians of {s['rounds']} interleaved rounds, ratios "
         f"étendue over peer with an order-statistic interval. Driver: {report['driver']}. "
         f"Peers: {', '.join(report['peers'])}."

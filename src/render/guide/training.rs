@@ -1,5 +1,6 @@
 //! The training pass.
 
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use super::forecast::forecast;
@@ -9,7 +10,7 @@ use super::table::Table;
 use super::{Guidance, PathRecord};
 use crate::gpu::Buffer;
 use crate::render::error::RenderError;
-use crate::render::{Guiding, Settings, Stage};
+use crate::render::{Guiding, Progress, Renderer, Settings, Stage};
 
 /// Seed of the training pass, whatever that of the picture: pictures of all seeds have the same guide.
 const SEED: u32 = 0x6a09_e667;
@@ -44,7 +45,8 @@ pub struct Training {
 /// bounce), or the picture is not worth a try.
 ///
 /// The guide depends on the scene, the camera, the picture's size and the shaders, not on the number of samples or the
-/// seed: parts of a render have the same one.
+/// seed: parts of a render have the same one. `on_progress` is called after each piece of work, of which most may be
+/// left out.
 ///
 /// # Errors
 /// As [`Stage::renderer`] and [`Renderer::render`](crate::render::Renderer::render).
@@ -52,6 +54,7 @@ pub fn train(
     stage: Stage<'_>,
     settings: &Settings,
     guiding: Guiding,
+    on_progress: &mut dyn FnMut(&Renderer<'_>, &Progress),
 ) -> Result<Option<Training>, RenderError> {
     if !is_worth_a_try(settings, guiding)
         || settings.max_depth < 3
@@ -71,7 +74,10 @@ pub fn train(
     let mut renderer = stage.guided_renderer(&small, recording)?;
     let start = Instant::now();
     let mut draw = |pass: u64| -> Result<Vec<PathRecord>, RenderError> {
-        renderer.render_to(pass)?;
+        let _ = renderer.draw_until(pass, &mut |renderer, progress| {
+            on_progress(renderer, progress);
+            ControlFlow::Continue(())
+        })?;
         Ok(stage.device.read(&records, 0, count)?)
     };
     let first = [draw(1)?, draw(2)?];
@@ -116,6 +122,9 @@ fn learn(lessons_so_far: &mut Vec<Lesson>, records: &[PathRecord]) {
 }
 
 impl Training {
+    /// Samples of each pixel of the small picture, if a guide is made.
+    pub const SAMPLES: u64 = PASSES;
+
     /// What it tells a kernel.
     pub fn guidance(&self) -> Guidance<'_> {
         Guidance {
