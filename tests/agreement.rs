@@ -4,8 +4,8 @@
 //!
 //! Every comparison is of two renders with samples of their own: Welch's t of the mean of each tile
 //! and channel, false alarms at most [`ALPHA`] a comparison (Šidák), and the mean of the whole
-//! picture, |z| < 4.5. With 49 comparisons a right program fails on a new device with a chance of
-//! 0.5 %; on one device nothing varies. `--nocapture` prints each verdict and the smallest
+//! picture, |z| < 4.5. With 58 comparisons a right program fails on a new device with a chance of
+//! 0.6 %; on one device nothing varies. `--nocapture` prints each verdict and the smallest
 //! relative bias that it would have seen; `ETENDUE_LONG=1` draws 16 times the samples.
 
 mod scene_common;
