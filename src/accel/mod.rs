@@ -88,8 +88,7 @@ impl std::str::FromStr for Instancing {
 
     fn from_str(name: &str) -> Result<Instancing, String> {
         let all = [Instancing::Auto, Instancing::Never, Instancing::Always];
-        let found = all.into_iter().find(|i| i.name() == name);
-        found.ok_or_else(|| format!("expected auto, never or always, not \"{name}\""))
+        crate::host::names::find(&all, Instancing::name, name)
     }
 }
 

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::host::names;
+
 /// What the probability of a light follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LightSelection {
@@ -56,7 +58,6 @@ impl FromStr for LightSelection {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|s| s.name() == name);
-        found.ok_or_else(|| format!("expected uniform, power or tree, not \"{name}\""))
+        names::find(&Self::ALL, Self::name, name)
     }
 }

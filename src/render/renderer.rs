@@ -189,17 +189,7 @@ impl<'a> Renderer<'a> {
         self.draw_until(self.settings.spp, on_progress)
     }
 
-    /// Draws samples until each pixel has so many, at most those that the settings ask for.
-    ///
-    /// # Errors
-    /// As [`Self::render`].
-    pub fn render_to(&mut self, spp: u64) -> Result<(), RenderError> {
-        let keep_on = &mut |_: &Self, _: &Progress| ControlFlow::Continue(());
-        self.draw_until(spp.min(self.settings.spp), keep_on)
-            .map(|_| ())
-    }
-
-    /// The same; as [`Self::render`], but that nothing is tried out first.
+    /// The same up to so many samples, at most those that the settings ask for; nothing is tried out first.
     pub(super) fn draw_until(
         &mut self,
         spp: u64,

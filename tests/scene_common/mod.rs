@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 use etendue::accel::BuildOptions;
 use etendue::gpu::Device;
 use etendue::render::{
-    Film, GpuScene, Guidance, Guiding, LightSelection, Prepared, Renderer, Settings, Stage, train,
+    Film, GpuScene, Guidance, Guiding, LightSelection, Prepared, Settings, Stage, train,
 };
 use etendue::scene::{Scene, gltf};
 use etendue::shader::ShaderLibrary;
@@ -49,24 +49,29 @@ pub fn render_with(
 
 /// The same for a scene that has been prepared, and perhaps been changed since.
 pub fn render_prepared(scene: &Scene, prepared: &Prepared, settings: &Settings) -> Film {
-    let device = device();
-    let gpu_scene = GpuScene::upload(device, prepared).expect("room on the device");
-    let library = ShaderLibrary::embedded();
-    let renderer = Renderer::new(device, &library, scene, prepared, &gpu_scene, settings);
-    whole_film(renderer.expect("a compiled shader"), settings)
+    on_prepared_stage(scene, prepared, |stage| {
+        draw(stage, settings, Guidance::default())
+    })
 }
 
 /// What `work` gives for a scene on the device.
 pub fn on_stage<T>(scene: &Scene, settings: &Settings, work: impl FnOnce(Stage<'_>) -> T) -> T {
     let prepared = Prepared::new(scene, settings.camera, &BuildOptions::default());
-    let prepared = prepared.expect("a prepared scene");
-    let gpu_scene = GpuScene::upload(device(), &prepared).expect("room on the device");
+    on_prepared_stage(scene, &prepared.expect("a prepared scene"), work)
+}
+
+fn on_prepared_stage<T>(
+    scene: &Scene,
+    prepared: &Prepared,
+    work: impl FnOnce(Stage<'_>) -> T,
+) -> T {
+    let gpu_scene = GpuScene::upload(device(), prepared).expect("room on the device");
     let library = ShaderLibrary::embedded();
     work(Stage {
         device: device(),
         library: &library,
         scene,
-        prepared: &prepared,
+        prepared,
         gpu_scene: &gpu_scene,
     })
 }
@@ -78,8 +83,7 @@ pub fn render_guided(scene: &Scene, settings: &Settings) -> Film {
             train(stage, settings, Guiding::On, &mut |_, _| {}).expect("a training pass");
         let training = training.expect("a training pass");
         assert!(training.guide.is_some());
-        let renderer = stage.guided_renderer(settings, training.guidance());
-        whole_film(renderer.expect("a compiled shader"), settings)
+        draw(stage, settings, training.guidance())
     })
 }
 
@@ -89,13 +93,12 @@ pub fn render_with_roulette(scene: &Scene, settings: &Settings, threshold: f32) 
         roulette: Some(threshold),
         ..Guidance::default()
     };
-    on_stage(scene, settings, |stage| {
-        let renderer = stage.guided_renderer(settings, guidance);
-        whole_film(renderer.expect("a compiled shader"), settings)
-    })
+    on_stage(scene, settings, |stage| draw(stage, settings, guidance))
 }
 
-fn whole_film(mut renderer: Renderer<'_>, settings: &Settings) -> Film {
+fn draw(stage: Stage<'_>, settings: &Settings, guidance: Guidance<'_>) -> Film {
+    let renderer = stage.guided_renderer(settings, guidance);
+    let mut renderer = renderer.expect("a compiled shader");
     let flow = renderer
         .render(&mut |_, _| ControlFlow::Continue(()))
         .expect("a render that ends");

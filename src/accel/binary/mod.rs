@@ -18,6 +18,7 @@ pub use collapse::{WIDTH, WideChildren, WideTopology};
 
 use super::primitive::Primitive;
 use crate::geometry::Aabb;
+use crate::host::names;
 use std::fmt;
 use std::str::FromStr;
 
@@ -62,8 +63,7 @@ impl FromStr for Preset {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Preset, String> {
-        let found = Preset::ALL.into_iter().find(|preset| preset.name() == name);
-        found.ok_or_else(|| format!("expected fast, balanced or best, not \"{name}\""))
+        names::find(&Preset::ALL, Preset::name, name)
     }
 }
 

@@ -43,13 +43,17 @@ pub fn forecast<'a>(
     let mean = cells.values().map(|m| m.all).sum::<f64>() / count;
     let (mut before, mut after) = (0.0, 0.0);
     for m in cells.values() {
-        // Errors count relative to brightness, as in relMSE.
-        let weight = m.count / ((m.all / m.count).powi(2) + 0.01 * mean * mean);
+        let weight = m.count * relative_weight(m.all / m.count, mean);
         let own = variance(m.own[0], m.own[1], m.count);
         before += weight * (own + variance(m.further[0], m.further[1], m.count));
         after += weight * (own + variance(m.further[0], m.further_guided, m.count));
     }
     (before > 0.0 && after.is_finite()).then(|| after / before)
+}
+
+/// Weight with which a squared error counts, relative to brightness as in relMSE, in a picture of this mean.
+pub fn relative_weight(brightness: f64, mean: f64) -> f64 {
+    1.0 / (brightness * brightness + 0.01 * mean * mean)
 }
 
 fn add(moments: &mut [f64; 2], value: f64) {

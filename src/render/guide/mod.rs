@@ -14,6 +14,7 @@ pub use table::Table as GuideTable;
 pub use training::{Training, train};
 
 use crate::gpu::Buffer;
+use crate::host::names;
 use crate::render::layout::PathRecord;
 
 /// Whether paths are guided.
@@ -50,8 +51,7 @@ impl std::str::FromStr for Guiding {
 
     fn from_str(name: &str) -> Result<Self, String> {
         let all = [Guiding::Auto, Guiding::On, Guiding::Off];
-        let found = all.into_iter().find(|g| g.name() == name);
-        found.ok_or_else(|| format!("expected auto, on or off, not \"{name}\""))
+        names::find(&all, Guiding::name, name)
     }
 }
 

@@ -8,6 +8,7 @@
 
 use rayon::prelude::*;
 
+use super::forecast::relative_weight;
 use super::lesson::RECORDS_PER_PATH;
 use crate::render::layout::PathRecord;
 
@@ -82,7 +83,7 @@ fn weights(samples: [&[PathRecord]; 2], width: usize) -> Vec<f64> {
     }
     let weight = |i: usize| {
         let (sum, count) = blocks[block(i)];
-        1.0 / ((sum / count).powi(2) + 0.01 * mean * mean)
+        relative_weight(sum / count, mean)
     };
     (0..pixels.len()).map(weight).collect()
 }

@@ -147,6 +147,11 @@ impl Table {
         self.cells[index(cell, lesson.face, LEVELS - 1) as usize] as usize
     }
 
+    /// How many densities there are, the uniform one among them.
+    pub fn density_count(&self) -> usize {
+        self.densities.len()
+    }
+
     /// The densities as the shader has them.
     pub fn densities(&self) -> Vec<Density> {
         let rounded = |density| decode(&encode(density));

@@ -95,7 +95,7 @@ pub fn train(
     Ok(Some(Training {
         guide: table.as_ref().map(upload).transpose()?,
         forecast: promise,
-        densities: table.as_ref().map_or(0, |t| t.densities().len()),
+        densities: table.as_ref().map_or(0, Table::density_count),
         roulette: roulette_of(first, &small, promise.filter(|_| table.is_some())),
         seconds: start.elapsed().as_secs_f64(),
     }))
