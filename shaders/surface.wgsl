@@ -41,7 +41,7 @@ struct Surface {
 const POSITION_ERROR: f32 = 16.0 * 5.9604644775390625e-8;
 
 fn surface_at(ray: Ray, hit: Hit) -> Surface {
-    let triangle = load_triangle(hit.triangle);
+    let triangle = hit_triangle(hit);
     let b = hit.b;
     var s: Surface;
     s.position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;

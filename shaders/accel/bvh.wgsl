@@ -53,9 +53,10 @@ fn trace_ray(t: ptr<function, Traversal>, is_shadow: bool) {
 
 fn trace_answer(t: Traversal) -> Answer {
   var hit = miss(t.query.ray);
+  hit.pair = load_pair(t.best.triangle);
   if (t.best.triangle != MISS) {
-    let refined = refined_hit_on(t.best.triangle, t.setup);
-    hit = Hit(refined.t, t.best.triangle, refined.b, refined.back_face);
+    let refined = refined_hit_on_pair(hit.pair, t.best.triangle, t.setup);
+    hit = Hit(refined.t, t.best.triangle, refined.b, refined.back_face, hit.pair);
   }
   return Answer(hit, t.occluded);
 }

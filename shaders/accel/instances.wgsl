@@ -117,7 +117,7 @@ fn trace_answer(t: Traversal) -> Answer {
     }
     let refined = refined_hit_on(t.best.triangle, setup);
     element_shift = 0u;
-    hit = Hit(refined.t, t.best.triangle, refined.b, refined.back_face);
+    hit = Hit(refined.t, t.best.triangle, refined.b, refined.back_face, hit.pair);
   }
   return Answer(hit, t.occluded);
 }

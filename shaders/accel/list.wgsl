@@ -2,7 +2,7 @@
 // lanes read the same pair at the same time, which costs a fraction of reading one each.
 // Twin of src/accel/list.rs, operation for operation.
 //
-// The generated list.wgsl has fn closest_of_all(setup, ray, camera_ray, seed) -> ListHit and
+// The generated list.wgsl has fn closest_of_all(setup, ray, camera_ray, seed) -> Hit and
 // fn any_of_all(setup, ray, seed) -> bool.
 
 #include "accel/trace.wgsl"
@@ -37,31 +37,38 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
   }
   if (query.has_ray) {
     let setup = ray_setup(query.ray.origin, query.ray.direction);
-    let best = closest_of_all(setup, query.ray, query.camera_ray, query.seed);
-    if (best.triangle != MISS) {
-      (*t).answer.hit = refine(best.triangle, setup);
-    }
+    (*t).answer.hit = closest_of_all(setup, query.ray, query.camera_ray, query.seed);
   }
   return true;
 }
 
-// The hit on a triangle. Beside an edge the quick test may have left open what the exact one denies:
+// The hit on a triangle of a pair, or a miss. Beside an edge the quick test may have left open what the exact one denies:
 // there the quick values are the hit, lest none of the triangles at the edge be met.
-fn refine(triangle: u32, setup: RaySetup) -> Hit {
-  let fan = pair_fan(load_element(triangle >> 1u), setup);
-  let second = (triangle & 1u) != 0u;
-  let s = fan_triangle(fan, second);
-  var hit = refined_hit(s);
-  if (hit.t <= 0.0) {
-    hit = quick_hit(select(fan.first_edges, fan.second_edges, second), s);
+fn refine(triangle: u32, pair: Element, setup: RaySetup, ray: Ray) -> Hit {
+  var found = miss(ray);
+  found.pair = pair;
+  if (triangle != MISS) {
+    let fan = pair_fan(pair, setup);
+    let second = (triangle & 1u) != 0u;
+    let s = fan_triangle(fan, second);
+    var hit = refined_hit(s);
+    if (hit.t <= 0.0) {
+      hit = quick_hit(select(fan.first_edges, fan.second_edges, second), s);
+    }
+    found = Hit(hit.t, triangle, hit.b, hit.back_face, pair);
   }
-  return Hit(hit.t, triangle, hit.b, hit.back_face);
+  return found;
 }
 
 // The hit by the quick edges; where t is not positive there is none.
 fn quick_hit(edges: vec3f, s: Sheared) -> TriangleHit {
   let determinant = (edges.x + edges.y) + edges.z;
   return TriangleHit(exact_depth(edges, s.a, s.b, s.c) / determinant, edges / determinant, determinant < 0.0);
+}
+
+// No hit; one at t_max counts.
+fn nothing_so_far(ray: Ray) -> ListHit {
+  return ListHit(bitcast<f32>(bitcast<u32>(ray.t_max) + 1u), MISS);
 }
 
 // The closer of a hit and those on the triangles (a, b, c), which is number `id`, and (a, c, d). The

@@ -36,6 +36,8 @@ struct Hit {
   b: vec3f,
   // Whether v0, v1, v2 run clockwise as seen from the ray's origin.
   back_face: bool,
+  // The element of the triangle's pair, read once for all that is asked of it; unless HAS_INSTANCES, or a miss.
+  pair: Element,
 }
 
 // Up to two rays, which are traced one right after the other: a lane that is done with the first does
@@ -61,7 +63,21 @@ struct Answer {
 }
 
 fn miss(ray: Ray) -> Hit {
-  return Hit(ray.t_max, MISS, vec3f(0.0), false);
+  return Hit(ray.t_max, MISS, vec3f(0.0), false, Element());
+}
+
+// The triangle of a hit, which is none.
+fn hit_triangle(hit: Hit) -> Triangle {
+  if (HAS_INSTANCES) {
+    return load_triangle(hit.triangle);
+  }
+  return pair_triangle(hit.pair, (hit.triangle & 1u) != 0u);
+}
+
+// The element of a triangle's pair, or any if there is no triangle: what is read before it is asked whether there is one
+// needs no second look.
+fn load_pair(triangle: u32) -> Element {
+  return load_element(select(triangle >> 1u, 0u, triangle == MISS));
 }
 
 fn begin_query(query: Query) -> Traversal {
@@ -98,9 +114,11 @@ fn pair_fan(pair: Element, setup: RaySetup) -> FanCandidates {
 // The hit of a ray on a triangle that it meets, in the space that the traversal is in.
 fn refined_hit_on(triangle: u32, setup: RaySetup) -> TriangleHit {
   if (HAS_INSTANCES) {
-    let pair = load_element((triangle >> 1u) - element_shift);
-    return refined_hit(fan_triangle(pair_fan(pair, setup), (triangle & 1u) != 0u));
+    return refined_hit_on_pair(load_element((triangle >> 1u) - element_shift), triangle, setup);
   }
-  let fan = pair_fan(load_element(triangle >> 1u), setup);
-  return refined_hit(fan_triangle(fan, (triangle & 1u) != 0u));
+  return refined_hit_on_pair(load_element(triangle >> 1u), triangle, setup);
+}
+
+fn refined_hit_on_pair(pair: Element, triangle: u32, setup: RaySetup) -> TriangleHit {
+  return refined_hit(fan_triangle(pair_fan(pair, setup), (triangle & 1u) != 0u));
 }

@@ -4,6 +4,7 @@ use super::error::RenderError;
 use super::layout::Light;
 use super::paged::{FIRST_PAGED_BINDING, PagedBuffer};
 use super::prepared::Prepared;
+use super::program::device_elements;
 use super::textures::srgb_table;
 use crate::gpu::{Buffer, Device, GpuError};
 
@@ -102,7 +103,7 @@ fn paged_buffers(device: &Device, scene: &Prepared) -> Result<Vec<PagedBuffer>, 
     // In the order of LARGE_ARRAYS.
     let words = PagedBuffer::upload::<u32>;
     Ok(vec![
-        PagedBuffer::upload(device, 0, &scene.bvh.elements)?,
+        PagedBuffer::upload(device, 0, &device_elements(&scene.bvh))?,
         words(device, 1, indices)?,
         PagedBuffer::upload(device, 2, &scene.vertex_words)?,
         words(device, 3, &scene.textures.words)?,

@@ -33,6 +33,7 @@ mod renderer;
 mod settings;
 pub mod shader_check;
 mod sharing;
+mod solids;
 mod spectrum;
 mod stage;
 mod stretched;

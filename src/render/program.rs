@@ -1,13 +1,15 @@
 //! The shader of a render: generated files, composition, compilation.
 
+use std::borrow::Cow;
+
 use super::error::RenderError;
 use super::gpu_scene::GpuScene;
 use super::guide::Guidance;
 use super::layout::layouts;
-use super::list_wgsl::list_wgsl;
+use super::list_wgsl::DeviceList;
 use super::prepared::Prepared;
 use super::settings::Settings;
-use crate::accel::Bvh;
+use crate::accel::{Bvh, Element};
 use crate::host::stages::stage;
 use crate::scene::Features;
 use crate::shader::{
@@ -79,12 +81,22 @@ pub fn accel_files(bvh: &Bvh) -> VirtualFiles {
         )
     };
     if bvh.is_list() {
-        let pairs = ("list.wgsl".into(), list_wgsl(&bvh.elements));
+        let pairs = ("list.wgsl".into(), DeviceList::new(&bvh.elements).wgsl);
         VirtualFiles::from([include("list"), pairs])
     } else if bvh.has_instances() {
         VirtualFiles::from([include("instances")])
     } else {
         VirtualFiles::from([include("bvh")])
+    }
+}
+
+/// The elements of an acceleration structure as its traversal on the device has them: of a list with more behind its
+/// pairs ([`accel_files`]).
+pub fn device_elements(bvh: &Bvh) -> Cow<'_, [Element]> {
+    if bvh.is_list() {
+        Cow::Owned(DeviceList::new(&bvh.elements).elements)
+    } else {
+        Cow::Borrowed(&bvh.elements)
     }
 }
 

@@ -121,11 +121,24 @@ pub fn virtual_files(
     Ok(files)
 }
 
-/// A structure over two pairs that share an edge.
+/// A structure over two pairs that share an edge; a list has a solid, too, an open box with two tiles.
 fn small_structure(structure: Structure) -> Bvh {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::ONE, Vec3::Y, Vec3::NEG_X];
     let triangle = |i: usize| [corners[0], corners[i], corners[i + 1]];
-    let triangles = [triangle(1), triangle(2), triangle(3)];
+    let mut triangles = vec![triangle(1), triangle(2), triangle(3)];
+    if structure == Structure::List {
+        let quad = |a: Vec3, u: Vec3, v: Vec3| {
+            let corner = a + 3.0 * Vec3::X;
+            let [b, c, d] = [corner + u, corner + u + v, corner + v];
+            [[corner, b, c], [corner, c, d]]
+        };
+        let half = 0.5 * Vec3::X;
+        triangles.extend(quad(Vec3::ZERO, half, Vec3::Y));
+        triangles.extend(quad(half, half, Vec3::Y));
+        triangles.extend(quad(Vec3::ZERO, Vec3::X, Vec3::Z));
+        triangles.extend(quad(Vec3::ZERO, Vec3::Y, Vec3::Z));
+        triangles.extend(quad(Vec3::X, Vec3::Y, Vec3::Z));
+    }
     let options = BuildOptions {
         list_limit: if structure == Structure::List {
             usize::MAX

@@ -95,13 +95,25 @@ fn the_hull_is_in_no_ray_s_way() {
     assert_eq!(compare(&Setup::new()).0, 0);
 }
 
-/// Negative controls: only the last pair counts, and rays from anywhere that are taken for rays between triangles.
+/// Negative controls: pairs of no solid do not count, nor do solids; and rays from anywhere that are taken for rays between triangles.
 #[test]
 fn pairs_left_out_are_noticed() {
-    let (from, to) = ("hit |= any_of_pair", "hit = any_of_pair");
-    let (unlike, blocked) = compare(&Setup::new().patched("list.wgsl", from, to));
-    assert!(unlike * 10 > blocked, "{unlike} of {blocked}");
-    let (from, to) = ("if (ray.start != NONE && ray.end != NONE)", "if (true)");
+    for (file, from, to) in [
+        (
+            "list.wgsl",
+            "hit |= any_of_pair",
+            "hit = hit && any_of_pair",
+        ),
+        (
+            "accel/solids.wgsl",
+            "so_far.blocks || blocks",
+            "so_far.blocks && blocks",
+        ),
+    ] {
+        let (unlike, blocked) = compare(&Setup::new().patched(file, from, to));
+        assert!(unlike * 100 > blocked, "{from}: {unlike} of {blocked}");
+    }
+    let (from, to) = ("if (ray.start == NONE || ray.end == NONE)", "if (false)");
     let setup = Setup::new().patched("list.wgsl", from, to);
     let target = Target::new(&room(), LIST);
     let kernel = target.kernel(&setup, "main");

@@ -3,6 +3,7 @@
 use etendue::accel::{Bvh, Hit};
 use etendue::geometry::Ray;
 use etendue::gpu::Buffer;
+use etendue::render::program::device_elements;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -27,7 +28,7 @@ impl Target {
     pub fn new(mesh: &[[Vec3; 3]], list_limit: usize) -> Self {
         let bvh = build(mesh, list_limit);
         Self {
-            elements: upload("elements", &bvh.elements),
+            elements: upload("elements", &device_elements(&bvh)),
             bvh,
             mesh: mesh.to_vec(),
         }
