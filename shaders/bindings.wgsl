@@ -1,10 +1,12 @@
 // Buffers of fixed size. The large ones, which may be split over pages, are in the generated
 // buffers.wgsl and read through load_element, load_index, load_vertex_word,
-// load_texel_word, load_environment_texel, load_environment_cdf and load_light_node.
+// load_texel_word, load_environment_texel, load_environment_cdf and load_light_node. Of a material each
+// field has a function in the generated material_table.wgsl, fn material_FIELD(i: u32); a texture is texture_at(i).
 
 #include "types.wgsl"
 #include "features.wgsl"
 #include "buffers.wgsl"
+#include "material_table.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> dispatch: Dispatch;

@@ -10,17 +10,17 @@ fn coverage(triangle: Triangle, b: vec3f) -> f32 {
     if (!HAS_ALPHA || (triangle.flags & TRIANGLE_ALPHA) == 0u) {
         return 1.0;
     }
-    var alpha = materials[triangle.material].base_color.a;
+    var alpha = material_base_color(triangle.material).a;
     if (HAS_COLORS && (triangle.flags & TRIANGLE_COLORS) != 0u) {
         alpha *= interpolate_vec4(vertex_words(triangle.index) + COLOR_OFFSET, b).a;
     }
-    let slot = materials[triangle.material].base_color_texture;
+    let slot = material_base_color_texture(triangle.material);
     if (HAS_BASE_COLOR_TEXTURE && slot.texture != NONE) {
         let uv = texture_coordinates(triangle.index, b);
         alpha *= sample_texture(slot, uv.xy, uv.zw).a;
     }
-    if ((materials[triangle.material].flags & MATERIAL_MASK) != 0u) {
-        return select(0.0, 1.0, alpha >= materials[triangle.material].alpha_cutoff);
+    if ((material_flags(triangle.material) & MATERIAL_MASK) != 0u) {
+        return select(0.0, 1.0, alpha >= material_alpha_cutoff(triangle.material));
     }
     return clamp(alpha, 0.0, 1.0);
 }

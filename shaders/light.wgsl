@@ -1,9 +1,13 @@
 // Light sampling: choose a light, then a point on it.
+//
+// The generated light_table.wgsl has fn light_at(i: u32) -> Light, and fn light_pair(id: u32) -> Element, the element of an
+// emissive triangle's pair.
 
 #include "surface.wgsl"
 #include "material.wgsl"
 #include "sampler.wgsl"
 #include "math/sampling.wgsl"
+#include "light_table.wgsl"
 #include "light/triangle.wgsl"
 #include "light/punctual.wgsl"
 #include "light/environment.wgsl"
@@ -47,7 +51,7 @@ fn sample_light(s: Surface, both_sides: bool, sampler: ptr<function, Sampler>) -
         light.probability = choice.probability;
         return sample_chosen_light(s, both_sides, light, sampler);
     }
-    return sample_chosen_light(s, both_sides, lights[choose_light(sampler)], sampler);
+    return sample_chosen_light(s, both_sides, light_at(choose_light(sampler)), sampler);
 }
 
 // A sample of a light that was chosen with its probability.
@@ -74,7 +78,7 @@ fn light_probability(light: u32, position: vec3f, normal: vec3f) -> f32 {
     if (HAS_LIGHT_TREE) {
         return light_tree_probability(light, light_receiver(position, normal));
     }
-    return lights[light].probability;
+    return light_at(light).probability;
 }
 
 // A light, in proportion to its probability. One alone needs no numbers, but keeps their dimension.
@@ -85,7 +89,7 @@ fn choose_light(sampler: ptr<function, Sampler>) -> u32 {
     }
     let choice = next_2d_bits(sampler);
     let index = multiply_high(choice.x, frame.light_count);
-    let light = lights[index];
+    let light = light_at(index);
     return select(light.alias_index, index, unit_float(choice.y) < light.threshold);
 }
 

@@ -13,9 +13,9 @@ fn sample_slot(slot: TextureSlot, s: Surface) -> vec4f {
 }
 
 fn base_color_at(s: Surface) -> vec4f {
-    var color = materials[s.material].base_color * s.color;
+    var color = material_base_color(s.material) * s.color;
     if (HAS_BASE_COLOR_TEXTURE) {
-        let slot = materials[s.material].base_color_texture;
+        let slot = material_base_color_texture(s.material);
         if (slot.texture != NONE) {
             color *= sample_texture(slot, s.uv0, s.uv1);
         }
@@ -28,7 +28,7 @@ fn emitted_radiance(s: Surface) -> vec3f {
     if (!HAS_EMISSION && !HAS_UNLIT) {
         return vec3f(0.0);
     }
-    let flags = materials[s.material].flags;
+    let flags = material_flags(s.material);
     if (HAS_UNLIT && (flags & MATERIAL_UNLIT) != 0u) {
         return base_color_at(s).rgb;
     }
@@ -40,17 +40,17 @@ fn emitted_radiance(s: Surface) -> vec3f {
 
 // Emitted radiance at a cosine to the triangle's normal: a clear coat reflects a part of it back.
 fn emissive_at(material: u32, uv0: vec2f, uv1: vec2f, cos_theta: f32) -> vec3f {
-    var emissive = materials[material].emissive;
-    if (HAS_CLEARCOAT && materials[material].clearcoat > 0.0) {
-        var clearcoat = materials[material].clearcoat;
-        let slot = materials[material].clearcoat_texture;
+    var emissive = material_emissive(material);
+    if (HAS_CLEARCOAT && material_clearcoat(material) > 0.0) {
+        var clearcoat = material_clearcoat(material);
+        let slot = material_clearcoat_texture(material);
         if (HAS_CLEARCOAT_TEXTURE && slot.texture != NONE) {
             clearcoat *= sample_texture(slot, uv0, uv1).r;
         }
         emissive *= 1.0 - clearcoat * clearcoat_fresnel(abs(cos_theta));
     }
     if (HAS_EMISSIVE_TEXTURE) {
-        let slot = materials[material].emissive_texture;
+        let slot = material_emissive_texture(material);
         if (slot.texture != NONE) {
             emissive *= sample_texture(slot, uv0, uv1).rgb;
         }
@@ -59,7 +59,7 @@ fn emissive_at(material: u32, uv0: vec2f, uv1: vec2f, cos_theta: f32) -> vec3f {
 }
 
 fn is_unlit(s: Surface) -> bool {
-    return HAS_UNLIT && (materials[s.material].flags & MATERIAL_UNLIT) != 0u;
+    return HAS_UNLIT && (material_flags(s.material) & MATERIAL_UNLIT) != 0u;
 }
 
 // The BSDF at a surface, in the frame s.shading.
@@ -70,16 +70,16 @@ fn bsdf_at(s: Surface, wo: vec3f, crossing: Crossing) -> Bsdf {
 fn bsdf_parameters(s: Surface, crossing: Crossing) -> BsdfParameters {
     var m: BsdfParameters;
     m.base_color = base_color_at(s).rgb;
-    m.metallic = materials[s.material].metallic;
-    m.roughness = materials[s.material].roughness;
+    m.metallic = material_metallic(s.material);
+    m.roughness = material_roughness(s.material);
     if (HAS_METALLIC_ROUGHNESS_TEXTURE) {
-        let texel = sample_slot(materials[s.material].metallic_roughness_texture, s);
+        let texel = sample_slot(material_metallic_roughness_texture(s.material), s);
         m.roughness *= texel.g;
         m.metallic *= texel.b;
     }
     m.eta = crossing.eta;
     m.thin = true;
-    m.albedo_table = materials[s.material].albedo_table;
+    m.albedo_table = material_albedo_table(s.material);
     if (HAS_SPECULAR) {
         add_specular_parameters(&m, s);
     }
@@ -112,26 +112,26 @@ fn bsdf_parameters(s: Surface, crossing: Crossing) -> BsdfParameters {
 }
 
 fn add_specular_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
-    (*m).specular = materials[s.material].specular;
-    (*m).specular_color = materials[s.material].specular_color;
+    (*m).specular = material_specular(s.material);
+    (*m).specular_color = material_specular_color(s.material);
     if (HAS_SPECULAR_TEXTURE) {
-        (*m).specular *= sample_slot(materials[s.material].specular_texture, s).a;
+        (*m).specular *= sample_slot(material_specular_texture(s.material), s).a;
     }
     if (HAS_SPECULAR_COLOR_TEXTURE) {
-        let texel = sample_slot(materials[s.material].specular_color_texture, s);
+        let texel = sample_slot(material_specular_color_texture(s.material), s);
         (*m).specular_color *= texel.rgb;
-        if (HAS_GLOSSINESS_TEXTURE && (materials[s.material].flags & MATERIAL_GLOSSINESS) != 0u) {
+        if (HAS_GLOSSINESS_TEXTURE && (material_flags(s.material) & MATERIAL_GLOSSINESS) != 0u) {
             (*m).roughness = 1.0 - (1.0 - (*m).roughness) * texel.a;
         }
     }
 }
 
 fn add_transmission_parameters(m: ptr<function, BsdfParameters>, s: Surface, crossing: Crossing) {
-    (*m).transmission = materials[s.material].transmission;
+    (*m).transmission = material_transmission(s.material);
     if (HAS_TRANSMISSION_TEXTURE) {
-        (*m).transmission *= sample_slot(materials[s.material].transmission_texture, s).r;
+        (*m).transmission *= sample_slot(material_transmission_texture(s.material), s).r;
     }
-    (*m).glass_table = materials[s.material].glass_table + select(0u, ALBEDO_SIZE, s.back_face && !(*m).thin);
+    (*m).glass_table = material_glass_table(s.material) + select(0u, ALBEDO_SIZE, s.back_face && !(*m).thin);
     if (crossing.near != NONE && crossing.far != NONE) {
         // The tables are for air on one side. Between two media the indices differ less, and so little is lost
         // that nothing is put back.
@@ -140,41 +140,41 @@ fn add_transmission_parameters(m: ptr<function, BsdfParameters>, s: Surface, cro
 }
 
 fn add_diffuse_transmission_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
-    (*m).diffuse_transmission = materials[s.material].diffuse_transmission;
-    (*m).diffuse_transmission_color = materials[s.material].diffuse_transmission_color;
+    (*m).diffuse_transmission = material_diffuse_transmission(s.material);
+    (*m).diffuse_transmission_color = material_diffuse_transmission_color(s.material);
     if (HAS_DIFFUSE_TRANSMISSION_TEXTURE) {
-        (*m).diffuse_transmission *= sample_slot(materials[s.material].diffuse_transmission_texture, s).a;
-        (*m).diffuse_transmission_color *= sample_slot(materials[s.material].diffuse_transmission_color_texture, s).rgb;
+        (*m).diffuse_transmission *= sample_slot(material_diffuse_transmission_texture(s.material), s).a;
+        (*m).diffuse_transmission_color *= sample_slot(material_diffuse_transmission_color_texture(s.material), s).rgb;
     }
 }
 
 fn add_clearcoat_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
-    (*m).clearcoat = materials[s.material].clearcoat;
-    (*m).clearcoat_roughness = materials[s.material].clearcoat_roughness;
+    (*m).clearcoat = material_clearcoat(s.material);
+    (*m).clearcoat_roughness = material_clearcoat_roughness(s.material);
     if (HAS_CLEARCOAT_TEXTURE) {
-        (*m).clearcoat *= sample_slot(materials[s.material].clearcoat_texture, s).r;
-        (*m).clearcoat_roughness *= sample_slot(materials[s.material].clearcoat_roughness_texture, s).g;
+        (*m).clearcoat *= sample_slot(material_clearcoat_texture(s.material), s).r;
+        (*m).clearcoat_roughness *= sample_slot(material_clearcoat_roughness_texture(s.material), s).g;
     }
     (*m).clearcoat_normal = to_local(s.shading, s.clearcoat_normal);
 }
 
 fn add_sheen_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
-    (*m).sheen_color = materials[s.material].sheen_color;
-    (*m).sheen_roughness = materials[s.material].sheen_roughness;
+    (*m).sheen_color = material_sheen_color(s.material);
+    (*m).sheen_roughness = material_sheen_roughness(s.material);
     if (HAS_SHEEN_TEXTURE) {
-        (*m).sheen_color *= sample_slot(materials[s.material].sheen_color_texture, s).rgb;
-        (*m).sheen_roughness *= sample_slot(materials[s.material].sheen_roughness_texture, s).a;
+        (*m).sheen_color *= sample_slot(material_sheen_color_texture(s.material), s).rgb;
+        (*m).sheen_roughness *= sample_slot(material_sheen_roughness_texture(s.material), s).a;
     }
 }
 
 fn film_at(s: Surface) -> Film {
-    var strength = materials[s.material].iridescence;
-    var thickness = materials[s.material].iridescence_thickness_max;
+    var strength = material_iridescence(s.material);
+    var thickness = material_iridescence_thickness_max(s.material);
     if (HAS_IRIDESCENCE_TEXTURE) {
-        strength *= sample_slot(materials[s.material].iridescence_texture, s).r;
-        let texel = sample_slot(materials[s.material].iridescence_thickness_texture, s);
-        thickness = mix(materials[s.material].iridescence_thickness_min, thickness, texel.g);
+        strength *= sample_slot(material_iridescence_texture(s.material), s).r;
+        let texel = sample_slot(material_iridescence_thickness_texture(s.material), s);
+        thickness = mix(material_iridescence_thickness_min(s.material), thickness, texel.g);
     }
-    return Film(strength, materials[s.material].iridescence_ior, 1.0e-9 * thickness);
+    return Film(strength, material_iridescence_ior(s.material), 1.0e-9 * thickness);
 }
 

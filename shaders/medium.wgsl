@@ -31,7 +31,7 @@ fn winner(a: u32, b: u32) -> u32 {
     if (a == 0u || b == 0u) {
         return a | b;
     }
-    return select(b, a, materials[a - 1u].medium_rank >= materials[b - 1u].medium_rank);
+    return select(b, a, material_medium_rank(a - 1u) >= material_medium_rank(b - 1u));
 }
 
 // With one more entry, unless all are taken.
@@ -64,18 +64,18 @@ fn medium_ior(medium: u32, wavelength: f32) -> f32 {
     if (medium == NONE) {
         return 1.0;
     }
-    let ior = materials[medium].ior;
+    let ior = material_ior(medium);
     if (!HAS_DISPERSION || wavelength == 0.0) {
         return ior;
     }
     // 1 / 0.4861^2 - 1 / 0.6563^2, and 1 / 0.5876^2.
-    let b = (ior - 1.0) * materials[medium].dispersion / (20.0 * 1.9103);
+    let b = (ior - 1.0) * material_dispersion(medium) / (20.0 * 1.9103);
     return max(1.0, ior + b * (1.0 / (wavelength * wavelength) - 2.8963));
 }
 
 // Whether the surface bounds a medium that light enters.
 fn is_solid(s: Surface) -> bool {
-    return HAS_MEDIA && (materials[s.material].flags & MATERIAL_SOLID) != 0u;
+    return HAS_MEDIA && (material_flags(s.material) & MATERIAL_SOLID) != 0u;
 }
 
 // What the surface does to the media of a path that meets it.
@@ -99,7 +99,7 @@ fn crossing_at(media: Media, wavelength: f32, s: Surface) -> Crossing {
         crossing.far = medium_of(crossing.media);
         crossing.eta = medium_ior(crossing.far, wavelength) / medium_ior(crossing.near, wavelength);
     } else {
-        crossing.eta = materials[s.material].ior;
+        crossing.eta = material_ior(s.material);
         if (HAS_MEDIA) {
             crossing.eta /= medium_ior(crossing.near, wavelength);
         }
@@ -117,7 +117,7 @@ fn medium_transmittance(medium: u32, distance: f32) -> vec3f {
     if (!HAS_ABSORPTION || medium == NONE) {
         return vec3f(1.0);
     }
-    let absorption = materials[medium].absorption;
+    let absorption = material_absorption(medium);
     // 0 times an infinite distance is no number.
     return select(vec3f(1.0), exp(-absorption * distance), absorption > vec3f(0.0));
 }
@@ -144,5 +144,5 @@ fn medium_dispersion(medium: u32) -> f32 {
     if (medium == NONE) {
         return 0.0;
     }
-    return materials[medium].dispersion;
+    return material_dispersion(medium);
 }

@@ -119,8 +119,8 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
     (*s).uv1 = uv.zw;
     let smooth_normal = normal;
     if (HAS_NORMAL_TEXTURE) {
-        let slot = materials[(*s).material].normal_texture;
-        let scale = materials[(*s).material].normal_scale;
+        let slot = material_normal_texture((*s).material);
+        let scale = material_normal_scale((*s).material);
         normal = perturb_normal(*s, slot, scale, normal, tangent);
     }
     let side = select(1.0, -1.0, (*s).back_face);
@@ -129,8 +129,8 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
     if (HAS_CLEARCOAT) {
         var coat = smooth_normal;
         if (HAS_CLEARCOAT_NORMAL_TEXTURE) {
-            let slot = materials[(*s).material].clearcoat_normal_texture;
-            let scale = materials[(*s).material].clearcoat_normal_scale;
+            let slot = material_clearcoat_normal_texture((*s).material);
+            let scale = material_clearcoat_normal_scale((*s).material);
             coat = perturb_normal(*s, slot, scale, coat, tangent);
         }
         (*s).clearcoat_normal = oriented(*s, coat, side);
@@ -153,13 +153,13 @@ fn oriented(s: Surface, shading_normal: vec3f, side: f32) -> vec3f {
 // Turns the shading frame so that its x axis runs along the stretch of highlights.
 fn turn_frame(s: ptr<function, Surface>, normal: vec3f, tangent: vec4f) {
     let material = (*s).material;
-    var strength = materials[material].anisotropy;
+    var strength = material_anisotropy(material);
     if (strength == 0.0 || tangent.w == 0.0) {
         return;
     }
-    var direction = vec2f(materials[material].anisotropy_cos, materials[material].anisotropy_sin);
-    if (HAS_ANISOTROPY_TEXTURE && materials[material].anisotropy_texture.texture != NONE) {
-        let texel = sample_texture(materials[material].anisotropy_texture, (*s).uv0, (*s).uv1);
+    var direction = vec2f(material_anisotropy_cos(material), material_anisotropy_sin(material));
+    if (HAS_ANISOTROPY_TEXTURE && material_anisotropy_texture(material).texture != NONE) {
+        let texel = sample_texture(material_anisotropy_texture(material), (*s).uv0, (*s).uv1);
         let d = texel.rg * 2.0 - 1.0;
         direction = vec2f(direction.x * d.x - direction.y * d.y, direction.y * d.x + direction.x * d.y);
         strength *= texel.b;

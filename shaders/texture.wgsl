@@ -8,7 +8,7 @@ fn sample_texture(slot: TextureSlot, uv0: vec2f, uv1: vec2f) -> vec4f {
     let uv = select(uv0, uv1, slot.tex_coord == 1u);
     let m = slot.matrix;
     let p = vec2f(m.x * uv.x + m.z * uv.y, m.y * uv.x + m.w * uv.y) + slot.offset;
-    return filter_texture(textures[slot.texture], p);
+    return filter_texture(texture_at(slot.texture), p);
 }
 
 fn filter_texture(info: Texture, uv: vec2f) -> vec4f {

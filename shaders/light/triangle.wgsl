@@ -1,8 +1,15 @@
 // Emissive triangles, sampled uniformly over their area.
 
+fn light_triangle(id: u32) -> Triangle {
+    if (HAS_INSTANCES) {
+        return load_triangle(id);
+    }
+    return pair_triangle(light_pair(id), (id & 1u) != 0u);
+}
+
 // A point on the triangle, as seen from `s`.
 fn light_triangle_sample(s: Surface, id: u32, u: vec2f) -> LightSample {
-    let triangle = load_triangle(id);
+    let triangle = light_triangle(id);
     let b = sample_triangle_uniform(u);
     let position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
     let cross_edges = triangle_cross(triangle);
@@ -12,7 +19,7 @@ fn light_triangle_sample(s: Surface, id: u32, u: vec2f) -> LightSample {
     let distance = stable_length(to_light);
     let wi = to_light / distance;
     let cos_light = -dot(wi, normal);
-    let two_sided = (materials[triangle.material].flags & MATERIAL_DOUBLE_SIDED) != 0u;
+    let two_sided = (material_flags(triangle.material) & MATERIAL_DOUBLE_SIDED) != 0u;
     if (distance == 0.0 || cos_light == 0.0 || (cos_light < 0.0 && !two_sided)) {
         return no_light_sample();
     }

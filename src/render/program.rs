@@ -9,6 +9,7 @@ use super::layout::layouts;
 use super::list_wgsl::DeviceList;
 use super::prepared::Prepared;
 use super::settings::Settings;
+use super::short_tables::table_files;
 use crate::accel::{Bvh, Element};
 use crate::host::stages::stage;
 use crate::scene::Features;
@@ -68,6 +69,7 @@ pub fn virtual_files(
         "buffers.wgsl".into(),
         gpu_scene.buffers_wgsl(settings.doublewords),
     );
+    files.extend(table_files(library, scene)?);
     files.extend(accel_files(&scene.bvh));
     Ok(files)
 }

@@ -8,6 +8,7 @@ use super::program::{
     self, Constant, ENTRY_FILE, feature_constants, features_wgsl, stack_constants,
 };
 use super::settings::Settings;
+use super::short_tables::long_tables;
 use crate::accel::{BuildOptions, Bvh, MAX_DEPTH, Placement, TwoLevel};
 use crate::scene::Features;
 use crate::shader::{Check, CompileOptions, ShaderLibrary, StructLayout, VirtualFiles};
@@ -117,6 +118,7 @@ pub fn virtual_files(
     let features = features_wgsl(&variant.constants);
     files.insert("features.wgsl".into(), features);
     files.insert("buffers.wgsl".into(), large_arrays_wgsl(variant.pages));
+    files.extend(long_tables(library)?);
     files.extend(program::accel_files(&small_structure(variant.structure)));
     Ok(files)
 }

@@ -18,11 +18,11 @@ use std::sync::OnceLock;
 use bytemuck::Pod;
 use etendue::accel::{Bvh, MAX_DEPTH};
 use etendue::gpu::{BindingKind, Bound, Buffer, Device, Pipeline};
-use etendue::render::large_arrays_wgsl;
 use etendue::render::layout::layouts;
 use etendue::render::program::{
     Constant, accel_files, feature_constants, features_wgsl, stack_constants,
 };
+use etendue::render::{Prepared, large_arrays_wgsl, long_tables, table_files};
 use etendue::scene::Features;
 use etendue::shader::{
     self, CompileOptions, ShaderLibrary, VirtualFiles, compile as compile_shader, compose,
@@ -133,6 +133,13 @@ impl Setup {
         self
     }
 
+    /// With the tables of a scene.
+    pub fn tables(mut self, scene: &Prepared) -> Self {
+        let files = table_files(&ShaderLibrary::embedded(), scene);
+        self.accel.extend(files.expect("a library"));
+        self
+    }
+
     /// Replaces a piece of a library file, which must be there: for negative controls.
     pub fn patched(mut self, file: &'static str, from: &'static str, to: &'static str) -> Self {
         self.patches.push((file, from, to));
@@ -162,6 +169,7 @@ impl Setup {
                 "#include \"integrator/path.wgsl\"\n".into(),
             ),
         ]);
+        files.extend(long_tables(&library).expect("a library"));
         files.extend(self.accel.clone());
         for (file, from, to) in &self.patches {
             let text = files.get(*file).map(String::as_str);
