@@ -52,15 +52,19 @@ fn the_report_has_every_field() {
     assert!(report["relative_error"].as_f64() > Some(0.0));
 }
 
-/// A list: closest-hit rays test all pairs of the scene, shadow rays those between the walls, of which there are 10.
+/// A list of solids: closest-hit rays test the one pair that the planes tell, shadow rays none; a ray in a thousand, near
+/// an edge, tests all.
 fn check_list_counts(report: &Value) {
     let number = |value: &Value| value.as_f64().expect("a number");
     let rays = &report["rays"];
     assert_eq!(rays["nodes_per_ray"], 0.0);
     let (closest, any) = (number(&rays["closest"]), number(&rays["any"]));
-    let pairs = number(&report["bvh"]["bytes"]) / 64.0;
-    let shadow_pairs = number(&rays["pairs_per_ray"]) * (closest + any) - pairs * closest;
-    assert!((shadow_pairs / any - 10.0).abs() < 1e-6, "{rays}");
+    let more = number(&rays["pairs_per_ray"]) * (closest + any) - closest;
+    let all = number(&report["bvh"]["bytes"]) / 64.0;
+    assert!(
+        more > -1e-6 && more < all * 1e-3 * (closest + any),
+        "{rays}"
+    );
 }
 
 #[test]

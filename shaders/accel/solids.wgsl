@@ -1,5 +1,5 @@
 // The convex solids of a tiny scene (src/render/solids/): what a ray meets, found from their planes, and where rounding
-// could decide, from all pairs. Whatever is certain is what all pairs would say.
+// could decide, from all pairs. Whatever is certain is what all pairs would say, but at the rim of an opening.
 //
 // The generated list.wgsl has const LIST_PAIRS, the number of pairs, fn solid_error, solid_reach and solid_inverse_height
 // () -> f32 (Solids::error and its neighbours), and calls these functions for each slab of each solid.

@@ -3,7 +3,8 @@
 //! Where a ray enters and leaves a convex polytope is known from its planes alone, at a fraction of what tests of its
 //! triangles cost (Kay and Kajiya 1986, for bounding volumes). `shaders/accel/solids.wgsl` finds by them which pair a
 //! ray meets and tests that one alone; where rounding could have decided, it tests all. So the planes need not be exact,
-//! but their errors must be bounded: [`Solids::error`].
+//! but their errors must be bounded: [`Solids::error`]. At the rim of an opening alone, so near to it, a ray may pass that
+//! meets the pair there.
 
 mod faces;
 mod hull_planes;
@@ -17,6 +18,9 @@ use super::layout::{FIRST_ATTRIBUTES, TRIANGLE_ALPHA};
 use crate::accel::Element;
 
 pub use wgsl::SolidsText;
+
+/// Pairs of a list with solids: below are the numbers of faces of one pair (`TILED` in `shaders/accel/solids.wgsl`).
+const MOST_PAIRS: usize = 64;
 
 /// 2^-24, half a unit of the last place of 1.
 const U: f64 = 1.0 / 16_777_216.0;
@@ -110,7 +114,8 @@ impl Solids {
             error: ERROR * reach,
             least_height: f64::INFINITY,
         };
-        if !EXTENTS.contains(&extent) || reach > FARTHEST * extent {
+        let is_far = reach > FARTHEST * extent;
+        if elements.len() > MOST_PAIRS || !EXTENTS.contains(&extent) || is_far {
             return None;
         }
         for group in groups(&corners, FLATNESS * reach) {
@@ -139,9 +144,7 @@ impl Solids {
         solids.least_height = heights.fold(f64::INFINITY, f64::min);
         (!solids.solids.is_empty()).then_some(solids)
     }
-}
 
-impl Solids {
     /// Whether points are within slabs, but for what vertices may be off their planes.
     fn hold(&self, slabs: &[Slab], points: &[DVec3]) -> bool {
         slabs.iter().all(|slab| {

@@ -175,3 +175,15 @@ fn vertices_are_within_their_slabs() {
         }
     }
 }
+
+/// Faces of one pair have the numbers below that of the first tiled face.
+#[test]
+fn too_many_pairs_have_no_solids() {
+    let cubes = |n: usize| -> Triangles {
+        let at = |i: usize| 3.0 * Vec3::new((i % 4) as f32, (i / 4) as f32, 0.0);
+        let cube_at = |i| cube().into_iter().map(move |t| t.map(|v| v + at(i)));
+        (0..n).flat_map(cube_at).collect()
+    };
+    assert!(counts(&cubes(10)).is_some());
+    assert!(counts(&cubes(11)).is_none());
+}

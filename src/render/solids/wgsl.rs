@@ -6,11 +6,11 @@ use std::fmt::Write;
 use glam::DVec3;
 
 use super::faces::{flat_axes, inner_lines};
-use super::{Face, Slab, Solid, Solids, corners_of};
+use super::{Face, MOST_PAIRS, Slab, Solid, Solids, corners_of};
 use crate::accel::Element;
 
 /// As `TILED` and `OPEN` in `shaders/accel/solids.wgsl`.
-const TILED: usize = 64;
+const TILED: usize = MOST_PAIRS;
 const OPEN: usize = 128;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
