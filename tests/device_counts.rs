@@ -9,6 +9,7 @@ use device_common::{ELEMENTS, Setup, device, rounds_as_the_host, upload};
 use etendue::accel::{Bvh, Steps};
 use etendue::geometry::Ray;
 use etendue::render::layout::ElementCounts;
+use etendue::render::program::device_elements;
 use glam::Vec3;
 
 const RAYS: usize = 4096;
@@ -26,7 +27,7 @@ fn on_the_host(bvh: &Bvh, ray: &Ray) -> [u32; 4] {
 }
 
 fn on_the_device(bvh: &Bvh, rays: &[Ray]) -> Vec<[u32; 4]> {
-    let elements = upload("elements", &bvh.elements);
+    let elements = upload("elements", &device_elements(bvh));
     let setup = Setup::new().on(&["COUNT_RAYS"]).structure(bvh);
     let kernel = setup.kernel("counts", "traversal");
     let count = rays.len();
@@ -72,16 +73,26 @@ fn check(name: &str, mesh: &[[Vec3; 3]], list_limit: usize) {
 fn the_device_counts_what_the_host_looks_at() {
     check("soup", &soup(1000, 0.2, 1), TREE);
     check("sphere", &sphere(24), TREE);
-    check("cube, a list", &cube(1), LIST);
+    check("soup, a list", &soup(12, 0.5, 1), LIST);
 }
 
 #[test]
 fn a_list_counts_all_its_pairs_and_no_node() {
-    let mesh = cube(1);
+    let mesh = soup(12, 0.5, 1);
     let bvh = build(&mesh, LIST);
     let pairs = bvh.elements.len() as u32;
     let ray = nasty_ray(&mesh, &mut Random(3));
     assert_eq!(on_the_device(&bvh, &[ray]), [[0, pairs, 0, pairs]]);
+}
+
+/// Planes tell which pair of a solid the closest hit is on, and near an edge all pairs do.
+#[test]
+fn a_solid_counts_the_pair_that_is_met() {
+    let bvh = build(&cube(1), LIST);
+    let through = |x: f32| Ray::new(Vec3::new(x, 0.3, 0.9), -Vec3::Z);
+    let counts = on_the_device(&bvh, &[through(0.2), through(1.0)]);
+    assert_eq!(counts[0], [0, 1, 0, 0]);
+    assert!(counts[1][1] == 7 && counts[1][3] > 0, "{:?}", counts[1]);
 }
 
 #[test]
