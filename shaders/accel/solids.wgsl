@@ -3,10 +3,11 @@
 //
 // The generated list.wgsl has const LIST_PAIRS, the number of pairs, fn solid_error, solid_reach and solid_inverse_height
 // () -> f32 (Solids::error and its neighbours), and calls these functions for each slab of each solid.
-// A face is the number of its pair; from TILED on, of several; OPEN where the solid is open.
+// A face is the number of its pair; if it is of several, a number beyond those of pairs (pair_of tells); OPEN where
+// the solid is open.
 
-// First number of a face of several pairs.
-const TILED: u32 = 64u;
+#include "math/float.wgsl"
+
 // The number of a face that is not there, and larger than any that is.
 const OPEN: u32 = 128u;
 
@@ -80,7 +81,7 @@ fn passes_by(c: Passage) -> bool {
 // Whether the errors of solids are bounded for a ray.
 fn is_ordinary(ray: Ray) -> bool {
   let origin = abs(ray.origin);
-  let size = max_direction(ray);
+  let size = max_component(abs(ray.direction));
   return all(origin <= vec3f(solid_reach())) && size > 1.0e-6 && size < 1.0e6;
 }
 
@@ -135,7 +136,7 @@ fn closest_with_solids(
   }
   var hit = refine(best.triangle, pair, setup, ray);
   // On an edge the pair beyond is met, too.
-  let reach = solid_error() + found.error * max_direction(ray);
+  let reach = solid_error() + found.error * max_component(abs(ray.direction));
   let is_inside = min(min(hit.b.x, hit.b.y), hit.b.z) > reach * solid_inverse_height();
   let is_known = !is_found || (on_pair.triangle != MISS && found.t + found.error < found.rest && is_inside);
   if (!(found.certain && is_known)) {
@@ -143,11 +144,6 @@ fn closest_with_solids(
     hit = refine(best.triangle, load_pair(best.triangle), setup, ray);
   }
   return hit;
-}
-
-fn max_direction(ray: Ray) -> f32 {
-  let size = abs(ray.direction);
-  return max(max(size.x, size.y), size.z);
 }
 
 // The closest hit of all pairs.
@@ -166,9 +162,7 @@ fn closest_of_listed(setup: RaySetup, ray: Ray, camera_ray: bool, seed: u32) -> 
 fn closer_of_listed(
   so_far: ListHit, pair: Element, i: u32, setup: RaySetup, ray: Ray, camera_ray: bool, seed: u32,
 ) -> ListHit {
-  if (COUNT_RAYS) {
-    pairs_seen += 1u;
-  }
+  if (COUNT_RAYS) { count_element(false); }
   let fan = pair_fan(pair, setup);
   return closer_of_pair(
     so_far, 2u * i, pair.d.y, pair.d.z, ray, camera_ray, seed, fan.a, fan.b, fan.c, fan.d,
@@ -203,13 +197,10 @@ fn obstacle(so_far: Obstacle, c: Passage, ray: Ray, own: u32, end: u32) -> Obsta
 
 // Whether anything is in a ray's way, by what pairs of no solid and what the solids say.
 fn any_with_solids(loose: bool, solids: Obstacle, setup: RaySetup, ray: Ray, seed: u32) -> bool {
-  if (loose || (solids.blocks && is_ordinary(ray))) {
-    return true;
+  if (is_ordinary(ray) && (solids.blocks || !solids.unsure)) {
+    return loose || solids.blocks;
   }
-  if (!solids.unsure && is_ordinary(ray)) {
-    return false;
-  }
-  return any_of_listed(setup, ray, seed);
+  return loose || any_of_listed(setup, ray, seed);
 }
 
 fn any_of_listed(setup: RaySetup, ray: Ray, seed: u32) -> bool {
@@ -218,9 +209,7 @@ fn any_of_listed(setup: RaySetup, ray: Ray, seed: u32) -> bool {
     if (count_step()) {
       break;
     }
-    if (COUNT_RAYS) {
-      pairs_seen += 1u;
-    }
+    if (COUNT_RAYS) { count_element(false); }
     let pair = load_element(i);
     let fan = pair_fan(pair, setup);
     hit = any_of_pair(2u * i, pair.d.y, pair.d.z, ray, seed, fan.a, fan.b, fan.c, fan.d);

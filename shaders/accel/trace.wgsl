@@ -66,7 +66,7 @@ fn miss(ray: Ray) -> Hit {
   return Hit(ray.t_max, MISS, vec3f(0.0), false, Element());
 }
 
-// The triangle of a hit, which is none.
+// The triangle of a hit that is no miss.
 fn hit_triangle(hit: Hit) -> Triangle {
   if (HAS_INSTANCES) {
     return load_triangle(hit.triangle);

@@ -1,9 +1,9 @@
 //! Access to tables of a few entries: every entry is read at an address that is the same for all lanes, and the one that
 //! a lane asks for is selected. A CPU reads such an address once, where entries of their own are gathered lane by lane.
 
-use std::fmt::{Display, Write};
+use std::fmt::Write;
 
-use super::layout::{LIGHT_KIND_SHIFT, LIGHT_TRIANGLE, Light};
+use super::layout::{LIGHT_KIND_SHIFT, LIGHT_TRIANGLE};
 use super::prepared::Prepared;
 use crate::shader::{ShaderError, ShaderLibrary, VirtualFiles};
 
@@ -13,30 +13,25 @@ const SHORT: usize = 8;
 /// Pairs of triangles that emit, of which all are read; an element is four times as large as a light.
 const SHORT_PAIRS: usize = 4;
 
+/// Numbers of entries of a scene's tables, 0 where they are not known.
+#[derive(Default)]
+struct Counts {
+    materials: usize,
+    textures: usize,
+    lights: usize,
+}
+
 /// The generated files by which a scene's lights, materials and textures are read.
 ///
 /// # Errors
 /// `types.wgsl` of the library, where the fields of structs are, cannot be read.
 pub fn table_files(library: &ShaderLibrary, scene: &Prepared) -> Result<VirtualFiles, ShaderError> {
-    let (materials, textures) = (scene.materials.len(), scene.textures.textures.len());
-    let of_materials = material_table_wgsl(library, materials, textures)?;
-    Ok(VirtualFiles::from([
-        ("light_table.wgsl".into(), light_table_wgsl(scene)),
-        ("material_table.wgsl".into(), of_materials),
-    ]))
-}
-
-/// The `light_table.wgsl` of a scene: `fn light_at(i: u32) -> Light`, and `fn light_pair(id: u32) -> Element`, which
-/// gives the element of an emissive triangle's pair.
-fn light_table_wgsl(scene: &Prepared) -> String {
-    let table = &scene.lights.table;
-    if !(1..=SHORT).contains(&table.len()) {
-        return long_light_table();
-    }
-    let pairs = first_of_pairs(table);
-    let is_short = !scene.bvh.has_instances() && pairs.len() <= SHORT_PAIRS;
-    let pairs = if is_short { &pairs[..] } else { &[] };
-    light_at(table.len()) + &light_pair(pairs)
+    let counts = Counts {
+        materials: scene.materials.len(),
+        textures: scene.textures.textures.len(),
+        lights: scene.lights.table.len(),
+    };
+    files(library, &counts, &short_pairs(scene))
 }
 
 /// The same for a scene that is not known: no table is short.
@@ -44,35 +39,38 @@ fn light_table_wgsl(scene: &Prepared) -> String {
 /// # Errors
 /// As [`table_files`].
 pub fn long_tables(library: &ShaderLibrary) -> Result<VirtualFiles, ShaderError> {
-    Ok(VirtualFiles::from([
-        ("light_table.wgsl".into(), long_light_table()),
-        (
-            "material_table.wgsl".into(),
-            material_table_wgsl(library, 0, 0)?,
-        ),
-    ]))
+    files(library, &Counts::default(), &[])
 }
 
-fn long_light_table() -> String {
-    light_at(0) + &light_pair(&[])
-}
-
-/// The `material_table.wgsl` of a scene with so many materials and textures, 0 if that is not known: for each field of a
-/// material `fn material_FIELD(i: u32)`, and `fn texture_at(i: u32) -> Texture`.
-fn material_table_wgsl(
+/// `material_table.wgsl`, for each field of a material `fn material_FIELD(i: u32)`, and `fn texture_at(i: u32) -> Texture`;
+/// `light_table.wgsl`, `fn light_at(i: u32) -> Light`, and `fn light_pair(id: u32) -> Element`, which gives the element of
+/// an emissive triangle's pair, one of those of the lights `firsts`, if there are such.
+fn files(
     library: &ShaderLibrary,
-    materials: usize,
-    textures: usize,
-) -> Result<String, ShaderError> {
+    counts: &Counts,
+    firsts: &[usize],
+) -> Result<VirtualFiles, ShaderError> {
     let types = library.read("types.wgsl")?;
-    let accessor = |(field, kind): &(&str, &str)| {
-        let entry = |i: &str| format!("materials[{i}].{field}");
-        let body = table_access(types, kind, materials, entry);
-        format!("fn material_{field}(i: u32) -> {kind} {{\n{body}}}\n")
+    let accessor = |name: &str, kind: &str, count: usize, entry: &dyn Fn(&str) -> String| {
+        let body = table_access(types, kind, count, entry);
+        format!("fn {name}(i: u32) -> {kind} {{\n{body}}}\n")
     };
-    let of_materials: String = fields_of(types, "Material").iter().map(accessor).collect();
-    let texture = table_access(types, "Texture", textures, |i| format!("textures[{i}]"));
-    Ok(of_materials + &format!("fn texture_at(i: u32) -> Texture {{\n{texture}}}\n"))
+    let material = |(field, kind): &(&str, &str)| {
+        let entry = |i: &str| format!("materials[{i}].{field}");
+        accessor(&format!("material_{field}"), kind, counts.materials, &entry)
+    };
+    let materials: String = fields_of(types, "Material").iter().map(material).collect();
+    let texture = |i: &str| format!("textures[{i}]");
+    let textures = accessor("texture_at", "Texture", counts.textures, &texture);
+    let light = |i: &str| format!("lights[{i}]");
+    let lights = accessor("light_at", "Light", counts.lights, &light);
+    Ok(VirtualFiles::from([
+        (
+            "light_table.wgsl".into(),
+            lights + &light_pair(types, firsts),
+        ),
+        ("material_table.wgsl".into(), materials + &textures),
+    ]))
 }
 
 /// The body of a function that gives the entry `i`, of a type, of a table with so many entries.
@@ -80,12 +78,16 @@ fn table_access(types: &str, kind: &str, count: usize, entry: impl Fn(&str) -> S
     if !(1..=SHORT).contains(&count) {
         return format!("    return {};\n", entry("i"));
     }
-    let parts: Vec<String> = match &fields_of(types, kind)[..] {
-        [] => vec![String::new()],
-        parts => parts.iter().map(|(name, _)| format!(".{name}")).collect(),
-    };
     let at = |i: usize| entry(&format!("{i}u"));
-    selection(count, &parts, at, |i| format!("i == {i}u"))
+    selection(count, &parts_of(types, kind), at, |i| format!("i == {i}u"))
+}
+
+/// The fields of a struct, each as `.NAME`; of another type the whole, which is no field.
+fn parts_of(types: &str, kind: &str) -> Vec<String> {
+    match &fields_of(types, kind)[..] {
+        [] => vec![String::new()],
+        fields => fields.iter().map(|(name, _)| format!(".{name}")).collect(),
+    }
 }
 
 /// Names and types of the fields of a struct in a text; none if it has no such struct.
@@ -102,8 +104,12 @@ fn fields_of<'a>(text: &'a str, name: &str) -> Vec<(&'a str, &'a str)> {
     inside.filter_map(field).collect()
 }
 
-/// Of each pair with lights the first entry that is one of its triangles.
-fn first_of_pairs(table: &[Light]) -> Vec<usize> {
+/// Of each pair with lights the first entry that is one of its triangles; none if these are not few.
+fn short_pairs(scene: &Prepared) -> Vec<usize> {
+    let table = &scene.lights.table;
+    if scene.bvh.has_instances() || table.len() > SHORT {
+        return Vec::new();
+    }
     let mut firsts: Vec<(u32, usize)> = Vec::new();
     for (i, light) in table.iter().enumerate() {
         let kind = light.kind_and_index >> LIGHT_KIND_SHIFT;
@@ -113,31 +119,17 @@ fn first_of_pairs(table: &[Light]) -> Vec<usize> {
             firsts.push((pair, i));
         }
     }
+    if firsts.len() > SHORT_PAIRS {
+        firsts.clear();
+    }
     firsts.into_iter().map(|(_, i)| i).collect()
 }
 
-fn light_at(count: usize) -> String {
-    if count == 0 {
-        return "fn light_at(i: u32) -> Light {\n    return lights[i];\n}\n".into();
-    }
-    let fields = [
-        ".threshold",
-        ".alias_index",
-        ".probability",
-        ".kind_and_index",
-    ];
-    let entry = |i: usize| format!("lights[{i}]");
-    let is_it = |i: usize| format!("i == {i}u");
-    let body = selection(count, &fields, entry, is_it);
-    format!("fn light_at(i: u32) -> Light {{\n{body}}}\n")
-}
-
-fn light_pair(firsts: &[usize]) -> String {
-    if firsts.is_empty() {
-        return "fn light_pair(id: u32) -> Element {\n    return load_element(id >> 1u);\n}\n"
-            .into();
-    }
+fn light_pair(types: &str, firsts: &[usize]) -> String {
     let mut text = String::from("fn light_pair(id: u32) -> Element {\n");
+    if firsts.is_empty() {
+        return text + "    return load_element(id >> 1u);\n}\n";
+    }
     for (k, i) in firsts.iter().enumerate() {
         let _ = writeln!(
             text,
@@ -146,14 +138,14 @@ fn light_pair(firsts: &[usize]) -> String {
     }
     let entry = |k: usize| format!("load_element(pair{k})");
     let is_it = |k: usize| format!("id >> 1u == pair{k}");
-    text + &selection(firsts.len(), &[".a", ".b", ".c", ".d"], entry, is_it) + "}\n"
+    text + &selection(firsts.len(), &parts_of(types, "Element"), entry, is_it) + "}\n"
 }
 
 /// The body of a function that gives the entry for which `is_it` is true, or the first; `parts` are those of which it
 /// consists, each selected by itself.
 fn selection(
     count: usize,
-    parts: &[impl Display],
+    parts: &[String],
     entry: impl Fn(usize) -> String,
     is_it: impl Fn(usize) -> String,
 ) -> String {

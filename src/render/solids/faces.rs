@@ -146,13 +146,10 @@ fn hull_area(points: &[DVec2]) -> f64 {
 
 /// The coordinates that are left without the largest of a normal, in their order.
 pub(super) fn flat_axes(normal: DVec3) -> [usize; 2] {
-    let size = normal.abs();
-    if size.x >= size.y && size.x >= size.z {
-        [1, 2]
-    } else if size.y >= size.z {
-        [0, 2]
-    } else {
-        [0, 1]
+    match normal.abs().max_position() {
+        0 => [1, 2],
+        1 => [0, 2],
+        _ => [0, 1],
     }
 }
 

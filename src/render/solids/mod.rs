@@ -19,7 +19,7 @@ use crate::accel::Element;
 
 pub use wgsl::SolidsText;
 
-/// Pairs of a list with solids: below are the numbers of faces of one pair (`TILED` in `shaders/accel/solids.wgsl`).
+/// Pairs of a list with solids: below are the numbers of faces of one pair.
 const MOST_PAIRS: usize = 64;
 
 /// 2^-24, half a unit of the last place of 1.

@@ -9,8 +9,9 @@ use super::faces::{flat_axes, inner_lines};
 use super::{Face, MOST_PAIRS, Slab, Solid, Solids, corners_of};
 use crate::accel::Element;
 
-/// As `TILED` and `OPEN` in `shaders/accel/solids.wgsl`.
+/// First number of a face of several pairs: beyond those of pairs, and with as many below [`OPEN`].
 const TILED: usize = MOST_PAIRS;
+/// As in `shaders/accel/solids.wgsl`.
 const OPEN: usize = 128;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
