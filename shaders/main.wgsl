@@ -70,7 +70,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
             reset_ray_counts();
             let sample_index = add_u64(dispatch.first_sample_low, dispatch.first_sample_high, pixel.count);
             random = sampler_begin(position, sample_index, frame.seed);
-            let on_film = next_2d(&random);
+            let on_film = place_on_film(&random);
             path = path_begin(camera_ray(position, on_film, lens_numbers(random)), &random);
             on_its_way = true;
         }
@@ -115,6 +115,19 @@ fn film_index(position: vec2u) -> u32 {
     let index = (position.y - frame.first_row) * frame.width + position.x;
     first_record = index * RECORDS_PER_PATH;
     return index;
+}
+
+// Where in its pixel a sample is. Two samples that the training pass compares are at one place: what differs between places
+// fades faster with the number of samples than any other noise, and no light sample or roulette changes it. All their
+// other numbers are independent, as those of well-spread samples say little of the noise.
+fn place_on_film(random: ptr<function, Sampler>) -> vec2f {
+    if (!RECORDS_PATHS) {
+        return next_2d(random);
+    }
+    var both = *random;
+    both.index &= ~1u;
+    *random = Sampler(hash2(vec2u(both.key, (*random).index)), 0u, both.dimension + 1u);
+    return next_2d(&both);
 }
 
 // Two uniform numbers for the lens. They have a dimension that no path reaches, so that a lens shifts

@@ -14,6 +14,12 @@ const LEAST_SURVIVAL: f32 = 1e-4;
 // chosen by light and cosine together, so it is mostly the better one (docs/kernel.md).
 override ENVIRONMENT_SAMPLES: f32 = 2.0;
 
+// Light samples of a path's first vertex, at most MOST_LIGHT_SAMPLES: as many as the training pass found best
+// (src/render/guide/effort.rs), or one. All share the camera ray and the surface (splitting: Arvo and Kirk 1990, Particle
+// Transport and Image Synthesis).
+override FIRST_LIGHT_SAMPLES: u32 = LEARNT_LIGHT_SAMPLES;
+const MOST_LIGHT_SAMPLES: u32 = 8u;
+
 // Pairs of random numbers that a vertex may use, so that one that uses fewer shifts no other's.
 const DIMENSIONS_PER_VERTEX: u32 = 6u;
 
@@ -30,6 +36,16 @@ struct LastBounce {
     environment_samples: f32,
 }
 
+// A light sample, and what the path gains if nothing is in the way of its ray.
+struct LightTry {
+    gain: vec3f,
+    seed: u32,
+    shadow: Ray,
+}
+
+// Light samples of the path under way whose rays are yet to be traced. Not in Path, which is copied.
+var<private> waiting_lights: array<LightTry, MOST_LIGHT_SAMPLES>;
+
 // A path under way. An integrator that includes this file says which techniques find lights with a
 // finite density, const LIGHT_SAMPLES and BSDF_SAMPLES (with both they are weighted by the power
 // heuristic), and const MAX_EDGES, a limit below the user's.
@@ -43,10 +59,13 @@ struct Path {
     first_dimension: u32,
     ray: Ray,
     last: LastBounce,
-    // What the light sample at the last vertex adds to L if nothing is in the way of its ray.
-    light: vec3f,
-    light_seed: u32,
-    shadow: Ray,
+    // The light sample at the last vertex, and of several the number of others (waiting_lights).
+    light: LightTry,
+    waiting_count: u32,
+    // If RECORDS_PATHS, of the light samples at the first vertex: their rays, and in luminance what one of two brought
+    // more than the other.
+    light_rays: u32,
+    light_difference: f32,
     // The solids that the path is in, if HAS_MEDIA.
     media: Media,
     // Micrometres; 0 as long as the path stands for all wavelengths. Changes if HAS_DISPERSION.
@@ -56,24 +75,41 @@ struct Path {
 // A path along a ray from the camera.
 fn path_begin(camera_ray: Ray, sampler: ptr<function, Sampler>) -> Path {
     let last = LastBounce(vec3f(0.0), vec3f(0.0), 0.0, true, false, 1.0);
-    return Path(vec3f(0.0), 0u, vec3f(1.0), (*sampler).dimension, camera_ray, last, vec3f(0.0), 0u, camera_ray, frame.media, 0.0);
+    var path: Path;
+    path.beta = vec3f(1.0);
+    path.first_dimension = (*sampler).dimension;
+    path.ray = camera_ray;
+    path.last = last;
+    path.media = frame.media;
+    return path;
 }
 
 // What to ask next: the ray along the next edge is traced together with the one to the light that
-// the last vertex chose.
+// the last vertex chose. Of several of these the others come before, alone.
 fn path_query(path: Path, sampler: ptr<function, Sampler>) -> Query {
     (*sampler).dimension = path.first_dimension + path.depth * DIMENSIONS_PER_VERTEX;
-    let has_shadow = HAS_LIGHTS && any(path.light != vec3f(0.0));
+    let has_shadow = HAS_LIGHTS && any(path.light.gain != vec3f(0.0));
+    let has_ray = is_going(path) && path.waiting_count == 0u;
     let is_first = path.depth == 0u;
-    return Query(path.ray, is_going(path), is_first, ray_seed(*sampler), path.shadow, has_shadow, path.light_seed);
+    return Query(path.ray, has_ray, is_first, ray_seed(*sampler), path.light.shadow, has_shadow, path.light.seed);
 }
 
 // Goes one edge further; false if the path has ended.
 fn path_step(path: ptr<function, Path>, answer: Answer, sampler: ptr<function, Sampler>) -> bool {
     if (HAS_LIGHTS && !answer.occluded) {
-        (*path).L += (*path).light;
+        (*path).L += (*path).light.gain;
     }
-    (*path).light = vec3f(0.0);
+    if (RECORDS_PATHS && (*path).depth == 1u && any((*path).light.gain != vec3f(0.0))) {
+        let brought = select(luminance((*path).light.gain), 0.0, answer.occluded);
+        (*path).light_difference += select(brought, -brought, (*path).waiting_count == 0u);
+        (*path).light_rays += 1u;
+    }
+    (*path).light.gain = vec3f(0.0);
+    if ((*path).waiting_count > 0u) {
+        (*path).waiting_count -= 1u;
+        (*path).light = waiting_lights[(*path).waiting_count];
+        return true;
+    }
     if (RECORDS_PATHS && (*path).depth > 0u) {
         record_gathered((*path).depth, luminance((*path).L));
     }
@@ -81,10 +117,10 @@ fn path_step(path: ptr<function, Path>, answer: Answer, sampler: ptr<function, S
     if (goes_on) {
         (*path).depth += 1u;
         path_vertex(path, answer.hit, sampler);
-        goes_on = is_going(*path) || any((*path).light != vec3f(0.0));
+        goes_on = is_going(*path) || any((*path).light.gain != vec3f(0.0));
     }
     if (RECORDS_PATHS && !goes_on) {
-        record_path((*path).depth, luminance((*path).L));
+        record_whole((*path).depth, luminance((*path).L), (*path).light_rays, (*path).light_difference);
     }
     return goes_on;
 }
@@ -109,7 +145,8 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
     if (hit.triangle == NONE) {
         if (HAS_ENVIRONMENT) {
             let light = environment_light((*path).last.normal, (*path).last.both_sides, ray.direction, (*path).last.alone);
-            (*path).L += beta * environment_hit_weight(light.pdf, (*path).last) * light.radiance;
+            let samples = f32(light_samples_at((*path).depth - 1u));
+            (*path).L += beta * environment_hit_weight(samples * light.pdf, (*path).last) * light.radiance;
         }
         return;
     }
@@ -120,7 +157,7 @@ fn path_vertex(path: ptr<function, Path>, hit: Hit, sampler: ptr<function, Sampl
         return;
     }
     if (HAS_EMISSION || HAS_UNLIT) {
-        let weight = surface_hit_weight(surface, (*path).last);
+        let weight = surface_hit_weight(surface, (*path).last, f32(light_samples_at((*path).depth - 1u)));
         (*path).L += beta * weight * emitted_radiance(surface);
     }
     if ((*path).depth >= min(frame.max_depth, MAX_EDGES) || is_unlit(surface)) {
@@ -215,32 +252,67 @@ fn roulette(depth: u32, carried: vec3f, u: f32) -> f32 {
     return select(0.0, 1.0 / survival, u < survival);
 }
 
-// Chooses a light, and what the path gains if the light can be seen.
+// Light samples of the vertex at a depth.
+fn light_samples_at(depth: u32) -> u32 {
+    if (FIRST_LIGHT_SAMPLES <= 1u) {
+        return 1u;
+    }
+    return select(1u, min(FIRST_LIGHT_SAMPLES, MOST_LIGHT_SAMPLES), depth == 1u);
+}
+
+// Chooses light samples. That of the last ray is at hand, the others wait.
 fn sample_direct(
     path: ptr<function, Path>, beta: vec3f, s: Surface, crossing: Crossing, bsdf: Bsdf, wo: vec3f,
     sampler: ptr<function, Sampler>,
 ) {
-    let seed = ray_seed(*sampler) ^ 0x5bd1e995u;
+    let count = light_samples_at((*path).depth);
+    for (var k = 0u; k < count; k += 1u) {
+        if (count_step()) {
+            break;
+        }
+        var numbers = part_of_sample(*sampler, count, k);
+        if (RECORDS_PATHS) {
+            // Independent.
+            numbers.key = hash2(vec2u(numbers.key, k));
+        }
+        let chosen = light_try((*path).media, beta, s, crossing, bsdf, wo, f32(count), &numbers);
+        if (any(chosen.gain != vec3f(0.0))) {
+            if (any((*path).light.gain != vec3f(0.0))) {
+                waiting_lights[(*path).waiting_count] = (*path).light;
+                (*path).waiting_count += 1u;
+            }
+            (*path).light = chosen;
+        }
+    }
+}
+
+// Chooses a light, as one of `count` samples, and what the path gains if the light can be seen.
+fn light_try(
+    media: Media, beta: vec3f, s: Surface, crossing: Crossing, bsdf: Bsdf, wo: vec3f, count: f32,
+    sampler: ptr<function, Sampler>,
+) -> LightTry {
+    var chosen: LightTry;
+    chosen.seed = ray_seed(*sampler) ^ 0x5bd1e995u;
     let light = sample_light(s, bsdf_has_smooth_transmission(bsdf), sampler);
     if (!(light.pdf > 0.0) || (!light.delta && !LIGHT_SAMPLES)) {
-        return;
+        return chosen;
     }
     let wi = to_local(s.shading, light.wi);
     if (!same_side(wi, dot(light.wi, s.normal))) {
-        return;
+        return chosen;
     }
-    var contribution = bsdf_eval(bsdf, wo, wi) * light.weight * transmittance_to(s, (*path).media, crossing, light, wi);
+    var contribution = bsdf_eval(bsdf, wo, wi) * light.weight * transmittance_to(s, media, crossing, light, wi);
     if (!light.delta && BSDF_SAMPLES) {
-        let samples = select(1.0, environment_samples(bsdf), light.at_infinity);
+        let samples = count * select(1.0, environment_samples(bsdf), light.at_infinity);
         contribution *= power_heuristic(samples * light.pdf, bsdf_pdf(bsdf, wo, wi));
     }
-    (*path).light = beta * contribution;
-    (*path).light_seed = seed;
-    (*path).shadow = shadow_ray(s, light);
+    chosen.gain = beta * contribution / count;
+    chosen.shadow = shadow_ray(s, light);
+    return chosen;
 }
 
-// Weight of an emitter that a BSDF sample (or the camera) hit.
-fn surface_hit_weight(s: Surface, last: LastBounce) -> f32 {
+// Weight of an emitter that a BSDF sample (or the camera) hit, where so many light samples compete.
+fn surface_hit_weight(s: Surface, last: LastBounce, light_samples: f32) -> f32 {
     if (last.alone || !LIGHT_SAMPLES || s.light == NONE) {
         return 1.0;
     }
@@ -251,7 +323,7 @@ fn surface_hit_weight(s: Surface, last: LastBounce) -> f32 {
     let cos_light = abs(dot(s.wo, s.normal));
     let chosen = light_probability(s.light, last.position, select(last.normal, vec3f(0.0), last.both_sides));
     let pdf = chosen * light_triangle_pdf(distance, cos_light, s.area);
-    return power_heuristic(last.pdf, pdf);
+    return power_heuristic(last.pdf, light_samples * pdf);
 }
 
 fn environment_hit_weight(pdf: f32, last: LastBounce) -> f32 {

@@ -21,6 +21,18 @@ fn sampler_begin(pixel: vec2u, sample_index: vec2u, seed: u32) -> Sampler {
     return Sampler(key, sample_index.x, 0u);
 }
 
+// The sampler for one of `count` parts of a sample: in each dimension the parts of all samples are one well-spread
+// sequence.
+fn part_of_sample(s: Sampler, count: u32, part: u32) -> Sampler {
+    if (count <= 1u) {
+        return s;
+    }
+    // In 64 bits: what does not fit in the index changes the key.
+    let index = s.index * count + part;
+    let high = multiply_high(s.index, count) + select(0u, 1u, index < part);
+    return Sampler(select(s.key, hash2(vec2u(s.key, high)), high != 0u), index, s.dimension);
+}
+
 // Two uniform 32-bit integers.
 fn next_2d_bits(s: ptr<function, Sampler>) -> vec2u {
     let bits = sampler_bits(*s, (*s).dimension);

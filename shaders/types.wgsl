@@ -277,9 +277,11 @@ struct PathRecord {
     beta: f32,
     // Luminance of what the path had gathered, the vertex's own light sample included; of the path all of it.
     gathered: f32,
-    // What the vertex's roulette goes by (path.wgsl), or 0 if it has none.
+    // What the vertex's roulette goes by (path.wgsl), or 0 if it has none; of the path what one of two light samples at its
+    // first vertex brought more than the other.
     carried: f32,
-    pad0: u32,
+    // Of the path: rays that these two took.
+    light_rays: u32,
 }
 
 const NONE: u32 = 0xffffffffu;

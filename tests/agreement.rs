@@ -151,6 +151,11 @@ fn check_samplers_and_roulette(bench: &Bench, reference: &Film) {
     bench.assert_agree("roulette", reference, &early);
     let none = bench.render(&without_roulette(&settings(256, 7)));
     bench.assert_agree("none against roulette", &early, &none);
+    let lights = Settings {
+        overrides: vec![("FIRST_LIGHT_SAMPLES".into(), 5.0)],
+        ..settings(256, 9)
+    };
+    bench.assert_agree("five light samples", reference, &bench.render(&lights));
 }
 
 /// The scene with no material smoother than [`ROUGH`].

@@ -123,6 +123,10 @@ fn the_report_says_whether_paths_were_guided() {
     assert!(on["forecast"].as_f64() > Some(0.0) && on["densities"].as_u64() > Some(6));
     assert!(on["roulette_threshold"].as_f64() > Some(0.0));
     assert!(on["roulette_forecast"].as_f64() < Some(1.0));
+    assert_eq!(
+        on["light_samples"].is_null(),
+        on["light_samples_forecast"].is_null()
+    );
     assert!(on["seconds"].as_f64() > Some(0.0));
     // Other samples of the same picture.
     let ratio = guided.expect("a mean") / mean.expect("a mean");

@@ -85,6 +85,49 @@ fn samples_of_all_pixels(index: u64) -> Vec<[u32; 4]> {
         .collect()
 }
 
+/// The parts of samples are the samples of a longer sequence; where its index has no room for them, they are others.
+#[test]
+fn parts_of_samples_are_one_sequence() {
+    for sampler in SAMPLERS {
+        let setup = Setup::new().sampler(sampler);
+        let (parts, whole) = (
+            setup.kernel("sampler", "parts"),
+            setup.kernel("sampler", "dimensions"),
+        );
+        let pixel = [31, 7];
+        for count in [1, 2, 3, 8] {
+            let part = |first: u32| {
+                let inputs: Vec<_> = (0..SAMPLES / count * count)
+                    .map(|i| [pixel[0], pixel[1], first + i / count, i % count])
+                    .collect();
+                let outputs = inputs.len();
+                parts.run::<_, [u32; 2]>(outputs as u32, [count, 4, 1], &inputs, outputs, &[])
+            };
+            let found = part(0);
+            let inputs = samples_of_a_pixel(pixel, 0, found.len() as u32);
+            assert!(
+                found == draw(&whole, &inputs, 4, 1, 1),
+                "{sampler}, {count} parts"
+            );
+            let last = u32::MAX - SAMPLES;
+            let far = part(last);
+            assert_uniform(
+                &format!("{sampler}, {count} parts, far"),
+                SIDE,
+                far.iter().map(|p| unit(*p)),
+            );
+            // As many, where indices of 32 bits would be the same.
+            let near = samples_of_a_pixel(pixel, u64::from(last.wrapping_mul(count)), 64);
+            let near = draw(&whole, &near, 4, 1, 1);
+            assert_eq!(
+                near[..] == far[..64],
+                count == 1,
+                "{sampler}, {count} parts"
+            );
+        }
+    }
+}
+
 #[test]
 fn pixels_seeds_and_halves_of_the_index_are_unrelated() {
     for sampler in SAMPLERS {

@@ -4,7 +4,7 @@ mod scene_common;
 
 use etendue::gpu::Buffer;
 use etendue::render::{Guiding, Settings, Training, train};
-use etendue::scene::Scene;
+use etendue::scene::{Environment, EnvironmentImage, Scene};
 use scene_common::{device, load, on_stage, square, with_integrator};
 
 /// What comes of training for a scene, with the words of the guide.
@@ -35,7 +35,9 @@ fn parts_of_a_render_have_the_same_guide() {
     let (again, words_again) = train_for(&scene, &part, Guiding::On).expect("a guide");
     assert!(words.len() > 10_000 && words == words_again);
     assert_eq!(training.forecast, again.forecast);
-    assert!(training.roulette.is_some() && training.roulette == again.roulette);
+    assert!(
+        training.effort.roulette.is_some() && training.effort.roulette == again.effort.roulette
+    );
 }
 
 #[test]
@@ -82,7 +84,7 @@ fn paths_are_guided_where_that_is_forecast_to_pay() {
 fn paths_end_by_a_threshold_that_was_learnt() {
     let learnt = |name: &str, settings: &Settings| {
         let found = train_for(&load(name), settings, Guiding::On);
-        found.and_then(|(training, _)| training.roulette)
+        found.and_then(|(training, _)| training.effort.roulette)
     };
     let settings = square(128, 16, 8);
     let roulette = learnt("cornell_box", &settings).expect("a threshold");
@@ -98,4 +100,44 @@ fn paths_end_by_a_threshold_that_was_learnt() {
         };
         assert_eq!(learnt("cornell_box", &own), None);
     }
+}
+
+/// Spheres under a sky of which one quarter is bright, and mostly behind other spheres.
+fn outdoors() -> Scene {
+    let mut scene = load("sphere_grid");
+    let (width, height) = (16, 8);
+    let texel = |i: usize| match (i % width, i / width) {
+        (4..8, 1..4) => [3.0; 3],
+        _ => [0.2; 3],
+    };
+    let texels = (0..width * height).map(texel).collect();
+    let image = EnvironmentImage {
+        width,
+        height,
+        texels,
+    };
+    scene.environment = Some(Environment {
+        radiance: [1.0; 3],
+        rotation: 0.0,
+        image: Some(image.into()),
+    });
+    scene
+}
+
+#[test]
+fn light_samples_are_as_many_as_pay() {
+    let learnt = |scene: &Scene, settings: &Settings| {
+        let found = train_for(scene, settings, Guiding::Auto);
+        found.expect("a try").0.effort.light_samples
+    };
+    let settings = square(256, 16, 8);
+    let found = learnt(&outdoors(), &settings).expect("more than one");
+    assert!(found.count > 1 && found.forecast < 0.9, "{found:?}");
+    // Light from further on is most of the noise.
+    assert_eq!(learnt(&load("cornell_box"), &settings), None);
+    let own = Settings {
+        overrides: vec![("FIRST_LIGHT_SAMPLES".into(), 3.0)],
+        ..settings.clone()
+    };
+    assert_eq!(learnt(&outdoors(), &own), None);
 }

@@ -69,7 +69,7 @@ pub struct RenderArgs {
     pub lights: Option<LightSelection>,
 
     /// Whether the diffuse lobe is guided to where a training pass found light: auto (where that says that it pays), on,
-    /// off
+    /// off. But for off that pass also says where paths end, and how many light samples their first vertices draw
     #[arg(long, value_name = "NAME", default_value_t)]
     pub guiding: Guiding,
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::render::{Guiding, Training};
+use crate::render::{Effort, Guiding, Training};
 
 /// Whether paths were guided, and why.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -20,6 +20,10 @@ pub struct GuidingReport {
     pub roulette_threshold: Option<f64>,
     /// Variance times time that the training pass foretold of it, over that of paths that do not end by chance.
     pub roulette_forecast: Option<f64>,
+    /// Light samples at the first vertices of paths; null where that is one, or as the shader's override says.
+    pub light_samples: Option<u32>,
+    /// Variance times time that the training pass foretold of them, over that with one.
+    pub light_samples_forecast: Option<f64>,
     /// Wall time of training but for compilation, a part of the phase `guide`.
     pub seconds: f64,
 }
@@ -27,13 +31,16 @@ pub struct GuidingReport {
 impl GuidingReport {
     /// Of a render.
     pub fn new(asked: Guiding, training: Option<&Training>) -> Self {
+        let effort = training.map_or(Effort::default(), |t| t.effort);
         Self {
             asked: asked.name(),
             used: training.is_some_and(|t| t.guide.is_some()),
             forecast: training.and_then(|t| t.forecast),
             densities: training.map_or(0, |t| t.densities),
-            roulette_threshold: training.and_then(|t| t.roulette).map(|r| r.threshold),
-            roulette_forecast: training.and_then(|t| t.roulette).map(|r| r.forecast),
+            roulette_threshold: effort.roulette.map(|r| r.threshold),
+            roulette_forecast: effort.roulette.map(|r| r.forecast),
+            light_samples: effort.light_samples.map(|l| l.count),
+            light_samples_forecast: effort.light_samples.map(|l| l.forecast),
             seconds: training.map_or(0.0, |t| t.seconds),
         }
     }

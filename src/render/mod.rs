@@ -48,7 +48,9 @@ pub use error::RenderError;
 pub use film::Film;
 pub use focus::distance_at;
 pub use gpu_scene::GpuScene;
-pub use guide::{Guidance, GuideTable, Guiding, Lesson, Roulette, Training, train};
+pub use guide::{
+    Effort, Guidance, GuideTable, Guiding, Lesson, LightSamples, Roulette, Training, train,
+};
 pub use light_selection::LightSelection;
 pub use light_tree::{Cone, LightBounds, LightTree};
 pub use lights::Lights;

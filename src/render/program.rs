@@ -59,11 +59,7 @@ pub fn virtual_files(
 ) -> Result<VirtualFiles, RenderError> {
     let mut files = choice_files(library, settings)?;
     let mut constants = constants(scene, settings, count_steps, workgroup_bytes);
-    constants.extend(
-        guidance
-            .constants()
-            .map(|(name, on)| (name, Constant::Bool(on))),
-    );
+    constants.extend(guidance.constants());
     files.insert("features.wgsl".into(), features_wgsl(&constants));
     files.insert(
         "buffers.wgsl".into(),

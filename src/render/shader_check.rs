@@ -101,6 +101,10 @@ pub fn constants(on: bool, structure: Structure) -> Vec<(&'static str, Constant)
         ("HAS_GUIDE", Constant::Bool(on)),
         ("RECORDS_PATHS", Constant::Bool(on)),
         ("HAS_ROULETTE_THRESHOLD", Constant::Bool(on)),
+        (
+            "LEARNT_LIGHT_SAMPLES",
+            Constant::U32(if on { 2 } else { 1 }),
+        ),
     ]);
     constants
 }

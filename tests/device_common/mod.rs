@@ -96,6 +96,7 @@ impl Setup {
         ] {
             constants.insert(name, Constant::U32(0));
         }
+        constants.insert("LEARNT_LIGHT_SAMPLES", Constant::U32(1));
         constants.extend(stack(MAX_DEPTH));
         Self {
             constants,

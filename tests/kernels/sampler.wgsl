@@ -21,3 +21,15 @@ fn dimensions(@builtin(global_invocation_id) id: vec3u) {
         outputs[id.x * params.z + i] = next_2d_bits(&random);
     }
 }
+
+// Of the sample with index v.z, for part v.w of params.y, the numbers of dimension params.z.
+@compute @workgroup_size(64)
+fn parts(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x >= params.x) {
+        return;
+    }
+    let v = inputs[id.x];
+    var random = part_of_sample(sampler_begin(v.xy, vec2u(v.z, 0u), params.w), params.y, v.w);
+    random.dimension = params.z;
+    outputs[id.x] = next_2d_bits(&random);
+}

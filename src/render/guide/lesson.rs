@@ -6,6 +6,9 @@ use crate::render::layout::{NONE, PathRecord};
 /// Records of a path: its own, then one for each of its first vertices (`RECORDS_PER_PATH` of `shaders/guide.wgsl`).
 pub const RECORDS_PER_PATH: usize = 8;
 
+/// Light samples at the first vertex of a recorded path.
+pub const RECORDED_LIGHT_SAMPLES: u32 = 2;
+
 /// What a vertex learnt: how much light came from a square of its hemisphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lesson {
@@ -38,6 +41,13 @@ fn lesson(vertex: &PathRecord, gathered: f32) -> Option<Lesson> {
         square: vertex.square as usize % SQUARES,
         light: light.max(0.0),
     })
+}
+
+/// The variance of what a path's first vertex sampled itself, for the vertex that it is, as far as the two samples tell; 0
+/// where that is no number.
+pub fn light_noise(path: &[PathRecord]) -> f64 {
+    let square = f64::from(path[0].carried).powi(2);
+    if square.is_finite() { square } else { 0.0 }
 }
 
 /// What a path's first vertex added to the pixel: all light, and what it sampled itself. None if the path had no such

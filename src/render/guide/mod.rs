@@ -2,20 +2,21 @@
 //! (`shaders/guide.wgsl`).
 
 mod density;
+mod effort;
 mod forecast;
 mod lesson;
-mod roulette;
 mod table;
 mod training;
 
+pub use effort::{Effort, LightSamples, Roulette};
 pub use lesson::Lesson;
-pub use roulette::Roulette;
 pub use table::Table as GuideTable;
 pub use training::{Training, train};
 
 use crate::gpu::Buffer;
 use crate::host::names;
 use crate::render::layout::PathRecord;
+use crate::render::program::Constant;
 
 /// Whether paths are guided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -56,14 +57,27 @@ impl std::str::FromStr for Guiding {
 }
 
 /// What a kernel has to do with training; nothing by default.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct Guidance<'a> {
     /// It is guided by this buffer.
     pub guide: Option<&'a Buffer>,
     /// It leaves records of its paths in this one.
     pub records: Option<&'a Buffer>,
-    /// Throughput below which its paths may end ([`Training::roulette`]).
+    /// Throughput below which its paths may end ([`Effort::roulette`]).
     pub roulette: Option<f32>,
+    /// Light samples at the first vertices of its paths, unless the shader's override says how many.
+    pub light_samples: u32,
+}
+
+impl Default for Guidance<'_> {
+    fn default() -> Self {
+        Self {
+            guide: None,
+            records: None,
+            roulette: None,
+            light_samples: 1,
+        }
+    }
 }
 
 impl<'a> Guidance<'a> {
@@ -76,11 +90,15 @@ impl<'a> Guidance<'a> {
     }
 
     /// The generated constants that say so.
-    pub fn constants(self) -> [(&'static str, bool); 3] {
+    pub fn constants(self) -> [(&'static str, Constant); 4] {
         [
-            ("HAS_GUIDE", self.guide.is_some()),
-            ("RECORDS_PATHS", self.records.is_some()),
-            ("HAS_ROULETTE_THRESHOLD", self.roulette.is_some()),
+            ("HAS_GUIDE", Constant::Bool(self.guide.is_some())),
+            ("RECORDS_PATHS", Constant::Bool(self.records.is_some())),
+            (
+                "HAS_ROULETTE_THRESHOLD",
+                Constant::Bool(self.roulette.is_some()),
+            ),
+            ("LEARNT_LIGHT_SAMPLES", Constant::U32(self.light_samples)),
         ]
     }
 }

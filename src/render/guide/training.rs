@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+use super::effort::{self, Choices, Effort, Roulette};
 use super::forecast::forecast;
-use super::lesson::{Lesson, RECORDS_PER_PATH, lessons};
-use super::roulette::{self, Roulette};
+use super::lesson::{Lesson, RECORDED_LIGHT_SAMPLES, RECORDS_PER_PATH, lessons};
 use super::table::Table;
 use super::{Guidance, PathRecord};
 use crate::gpu::Buffer;
@@ -34,14 +34,15 @@ pub struct Training {
     pub forecast: Option<f64>,
     /// Densities that were learnt.
     pub densities: usize,
-    /// Where paths had better end; none if the shader's overrides say that.
-    pub roulette: Option<Roulette>,
+    /// Where paths had better end, and how many light samples their first vertices draw, as far as the shader's overrides
+    /// do not say that.
+    pub effort: Effort,
     /// Wall time of drawing and learning.
     pub seconds: f64,
 }
 
 /// Draws a small picture by the integrator of the settings, and makes a guide of what its paths find, where that pays or is
-/// asked for, and a rule by which they end. None where nothing can be learnt (an integrator whose paths leave no records, paths without a second
+/// asked for, and a rule by which they end and draw light samples. None where nothing can be learnt (an integrator whose paths leave no records, paths without a second
 /// bounce), or the picture is not worth a try.
 ///
 /// The guide depends on the scene, the camera, the picture's size and the shaders, not on the number of samples or the
@@ -69,6 +70,7 @@ pub fn train(
         .buffer("path records", count * size_of::<PathRecord>() as u64)?;
     let recording = Guidance {
         records: Some(&records),
+        light_samples: RECORDED_LIGHT_SAMPLES,
         ..Guidance::default()
     };
     let mut renderer = stage.guided_renderer(&small, recording)?;
@@ -82,7 +84,8 @@ pub fn train(
     };
     let first = [draw(1)?, draw(2)?];
     let first = [&first[0][..], &first[1]];
-    let promise = promise_of(first, small.width as usize);
+    let effort = effort::best(first, small.width as usize, choices(&small));
+    let promise = promise_of(first, small.width as usize, effort.light_count());
     let mut learnt = Vec::new();
     if is_used(guiding, promise) {
         first.iter().for_each(|paths| learn(&mut learnt, paths));
@@ -96,25 +99,37 @@ pub fn train(
         guide: table.as_ref().map(upload).transpose()?,
         forecast: promise,
         densities: table.as_ref().map_or(0, Table::density_count),
-        roulette: roulette_of(first, &small, promise.filter(|_| table.is_some())),
+        effort: for_guide(effort, promise.filter(|_| table.is_some())),
         seconds: start.elapsed().as_secs_f64(),
     }))
 }
 
-/// The roulette for paths with a guide of this forecast, or without one; none where the user has a rule of their own.
-fn roulette_of(
-    first: [&[PathRecord]; 2],
-    small: &Settings,
-    guided: Option<f64>,
-) -> Option<Roulette> {
-    let is_set = |(name, _): &(String, f64)| name.starts_with("ROULETTE_");
-    if small.overrides.iter().any(is_set) {
-        return None;
+/// What the user's overrides leave to be found out.
+fn choices(small: &Settings) -> Choices {
+    let is_free = |start: &str| {
+        !small
+            .overrides
+            .iter()
+            .any(|(name, _)| name.starts_with(start))
+    };
+    Choices {
+        roulette: is_free("ROULETTE_"),
+        light_samples: is_free("FIRST_LIGHT_SAMPLES"),
     }
-    let found = roulette::best(first, small.width as usize)?;
+}
+
+/// The effort of paths with a guide of this forecast, or without one.
+fn for_guide(effort: Effort, guided: Option<f64>) -> Effort {
     // The best chance to go on is in proportion to what is carried over the standard deviation.
-    let threshold = found.threshold * guided.map_or(1.0, |forecast| forecast.min(1.0).sqrt());
-    Some(Roulette { threshold, ..found })
+    let factor = guided.map_or(1.0, |forecast| forecast.min(1.0).sqrt());
+    let scaled = |r: Roulette| Roulette {
+        threshold: factor * r.threshold,
+        ..r
+    };
+    Effort {
+        roulette: effort.roulette.map(scaled),
+        ..effort
+    }
 }
 
 fn learn(lessons_so_far: &mut Vec<Lesson>, records: &[PathRecord]) {
@@ -130,7 +145,8 @@ impl Training {
         Guidance {
             guide: self.guide.as_ref(),
             records: None,
-            roulette: self.roulette.map(|r| r.threshold as f32),
+            roulette: self.effort.roulette.map(|r| r.threshold as f32),
+            light_samples: self.effort.light_count(),
         }
     }
 }
@@ -151,12 +167,16 @@ fn is_used(guiding: Guiding, forecast: Option<f64>) -> bool {
 }
 
 /// What a guide made of half of the paths, those of every other pixel, would do for the other half.
-fn promise_of(records: [&[PathRecord]; 2], width: usize) -> Option<f64> {
+fn promise_of(records: [&[PathRecord]; 2], width: usize, light_samples: u32) -> Option<f64> {
     let paths = || records.map(|pass| pass.chunks_exact(RECORDS_PER_PATH).enumerate());
     let both = || paths().into_iter().flatten();
     let half = |odd: usize| both().filter(move |(i, _)| (i % width + i / width) % 2 == odd);
     let learnt: Vec<_> = half(0).flat_map(|(_, path)| lessons(path)).collect();
-    forecast(&Table::learn(&learnt)?, half(1).map(|(_, path)| path))
+    forecast(
+        &Table::learn(&learnt)?,
+        half(1).map(|(_, path)| path),
+        light_samples,
+    )
 }
 
 fn training_settings(settings: &Settings) -> Settings {

@@ -187,10 +187,11 @@ shared_struct! {
         beta: f32,
         /// Luminance gathered up to the vertex, or by the path.
         gathered: f32,
-        /// What the vertex's roulette goes by: the mean component of its throughput; 0 where there is none.
+        /// What the vertex's roulette goes by: the mean component of its throughput; 0 where there is none. Of the path
+        /// what one of two light samples at its first vertex brought more than the other.
         carried: f32,
-        /// Unused.
-        pad0: u32,
+        /// Of the path: rays that these two took.
+        light_rays: u32,
     }
 }
 
