@@ -143,6 +143,6 @@ fn record_gathered(depth: u32, gathered: f32) {
 
 // Notes how many vertices a path has, all that it gathered, and of the light samples at its first vertex how many rays
 // they took and how much more of all came from one of two than from the other.
-fn record_whole(vertices: u32, gathered: f32, light_rays: u32, light_difference: f32) {
+fn record_path(vertices: u32, gathered: f32, light_rays: u32, light_difference: f32) {
     path_records[first_record] = PathRecord(vec3f(0.0), vertices, 0.0, gathered, light_difference, light_rays);
 }

@@ -120,7 +120,7 @@ fn path_step(path: ptr<function, Path>, answer: Answer, sampler: ptr<function, S
         goes_on = is_going(*path) || any((*path).light.gain != vec3f(0.0));
     }
     if (RECORDS_PATHS && !goes_on) {
-        record_whole((*path).depth, luminance((*path).L), (*path).light_rays, (*path).light_difference);
+        record_path((*path).depth, luminance((*path).L), (*path).light_rays, (*path).light_difference);
     }
     return goes_on;
 }

@@ -42,8 +42,8 @@ pub struct Training {
 }
 
 /// Draws a small picture by the integrator of the settings, and makes a guide of what its paths find, where that pays or is
-/// asked for, and a rule by which they end and draw light samples. None where nothing can be learnt (an integrator whose paths leave no records, paths without a second
-/// bounce), or the picture is not worth a try.
+/// asked for, and a rule by which they end and draw light samples. None where nothing can be learnt (an integrator whose
+/// paths leave no records, paths without a second bounce), or the picture is not worth a try.
 ///
 /// The guide depends on the scene, the camera, the picture's size and the shaders, not on the number of samples or the
 /// seed: parts of a render have the same one. `on_progress` is called after each piece of work, of which most may be
@@ -84,8 +84,14 @@ pub fn train(
     };
     let first = [draw(1)?, draw(2)?];
     let first = [&first[0][..], &first[1]];
-    let effort = effort::best(first, small.width as usize, choices(&small));
-    let promise = promise_of(first, small.width as usize, effort.light_count());
+    let choices = choices(&small);
+    let effort = effort::best(first, small.width as usize, choices);
+    let light_samples = match choices.light_samples {
+        true => effort.light_count(),
+        // As many as were recorded.
+        false => RECORDED_LIGHT_SAMPLES,
+    };
+    let promise = promise_of(first, small.width as usize, light_samples);
     let mut learnt = Vec::new();
     if is_used(guiding, promise) {
         first.iter().for_each(|paths| learn(&mut learnt, paths));
