@@ -102,22 +102,18 @@ struct Records {
 /// independent numbers.
 pub fn best(samples: [&[PathRecord]; 2], width: usize, choices: Choices) -> Effort {
     let records = Records::new(samples, width, choices);
-    let alone = records.best_with(1);
-    let more = if choices.light_samples {
-        let tried = LIGHT_SAMPLES.map(|count| (count, records.best_with(count)));
-        let products = tried.iter().map(|(_, (_, product))| *product);
-        let least = products.fold(f64::INFINITY, f64::min);
-        let is_least = |(_, (_, product)): &(u32, (_, f64))| *product <= ALMOST_LIGHT * least;
-        tried.into_iter().find(is_least).filter(|(n, _)| *n > 1)
-    } else {
-        None
-    };
-    let light_samples = more.map(|(count, (_, product))| LightSamples {
+    let tried = LIGHT_SAMPLES.map(|count| (count, records.best_with(count)));
+    let (_, (_, alone)) = tried[0];
+    let products = tried.iter().map(|(_, (_, product))| *product);
+    let least = products.fold(f64::INFINITY, f64::min);
+    let found = tried.iter().find(|(_, t)| t.1 <= ALMOST_LIGHT * least);
+    let &(count, (roulette, product)) = found.unwrap_or(&tried[0]);
+    let light_samples = (count > 1).then(|| LightSamples {
         count,
-        forecast: product / alone.1,
+        forecast: product / alone,
     });
     Effort {
-        roulette: more.map_or(alone, |(_, with_more)| with_more).0,
+        roulette,
         light_samples,
     }
 }
@@ -128,6 +124,7 @@ impl Records {
         let variance = variance(samples, &weights);
         let steps = if choices.roulette { 0..STEPS } else { 0..0 };
         let tried = steps.into_par_iter().map(|i| SMALLEST * STEP.powi(i));
+        // Where it is not to be found out, all numbers are alike, and the first is taken.
         let (light, light_rays) = match choices.light_samples {
             true => (light_variance(samples, &weights), light_rays(samples)),
             false => (0.0, 0.0),

@@ -20,6 +20,16 @@ fn path(gathered: [f32; 4]) -> Vec<PathRecord> {
     records
 }
 
+/// Uniform numbers below 1.
+fn numbers(mut state: u64) -> impl FnMut() -> f64 {
+    move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
 /// Plays roulette as the shader does.
 fn play(path: &[PathRecord], threshold: f64, random: &mut impl FnMut() -> f64) -> (f64, f64) {
     let (mut weight, mut value, mut time) = (1.0, f64::from(path[1].gathered), FIRST_EDGE);
@@ -39,13 +49,7 @@ fn play(path: &[PathRecord], threshold: f64, random: &mut impl FnMut() -> f64) -
 #[test]
 fn what_a_threshold_does_is_known_without_trying() {
     let path = path([1.0, 3.0, 4.0, 6.0]);
-    let mut state = 1_u64;
-    let mut random = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut random = numbers(1);
     for threshold in [0.1, 0.2, 0.4, 0.9] {
         let (mut mean, mut square, mut time) = (0.0, 0.0, 0.0);
         let plays = 400_000;
@@ -108,13 +112,8 @@ const PIXELS: usize = 1024;
 /// Two samples whose first vertices' two light samples bring `light` and whose further edges bring `further`, both of
 /// them random.
 fn lit(light: f32, further: f32) -> [Vec<PathRecord>; 2] {
-    let mut state = 9_u64;
-    let mut random = move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (state >> 40) as f32 / (1_u64 << 24) as f32
-    };
+    let mut numbers = numbers(9);
+    let mut random = move || numbers() as f32;
     [0, 1].map(|_| {
         let of_pixel = |_| {
             let [a, b] = [0.5 * light * random(), 0.5 * light * random()];
