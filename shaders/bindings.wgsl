@@ -1,6 +1,7 @@
 // Buffers of fixed size. The large ones, which may be split over pages, are in the generated
 // buffers.wgsl and read through load_element, load_index, load_vertex_word,
-// load_texel_word, load_environment_texel, load_environment_cdf and load_light_node. Of a material each
+// load_texel_word, load_environment_texel, load_environment_cdf and load_light_node; there is the film, too (binding 2), behind
+// load_pixel and store_pixel. Of a material each
 // field has a function in the generated material_table.wgsl, fn material_FIELD(i: u32); a texture is texture_at(i).
 
 #include "types.wgsl"
@@ -10,7 +11,6 @@
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> dispatch: Dispatch;
-@group(0) @binding(2) var<storage, read_write> film: array<FilmPixel>;
 @group(0) @binding(3) var<storage, read_write> status: Status;
 @group(0) @binding(4) var<storage, read> materials: array<Material>;
 @group(0) @binding(5) var<storage, read> textures: array<Texture>;

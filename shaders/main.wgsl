@@ -34,13 +34,11 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
     if (item * dispatch.lane_stride != id.x) {
         return;
     }
-    var position = seek_pixel(&item);
-    if (item >= dispatch.item_count) {
-        return;
-    }
-    var index = film_index(position);
-    var pixel = film[index];
-    let count_before = pixel.count;
+    var has_pixel = false;
+    var position: vec2u;
+    var index = 0u;
+    var pixel: FilmPixel;
+    var count_before = 0u;
     var steps_before = steps;
     var random: Sampler;
     var path: Path;
@@ -53,15 +51,19 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
         }
         // Begin to draw a sample of the pixel's square.
         if (!on_its_way) {
-            if (pixel.count >= dispatch.target_count) {
-                film[index] = pixel;
-                item += dispatch.lanes;
+            if (!has_pixel || pixel.count >= dispatch.target_count) {
+                if (has_pixel) {
+                    store_pixel(index, pixel);
+                    item += dispatch.lanes;
+                }
                 position = seek_pixel(&item);
-                if (item >= dispatch.item_count) {
+                has_pixel = item < dispatch.item_count;
+                if (!has_pixel) {
                     break;
                 }
                 index = film_index(position);
-                pixel = film[index];
+                pixel = load_pixel(index);
+                count_before = pixel.count;
             }
             if (no_room_for_sample()) {
                 break;
@@ -90,11 +92,14 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
             }
         }
     }
-    film[index] = pixel;
-    if (COUNT_STEPS && pixel.count < dispatch.target_count) {
-        atomicAdd(&status.unfinished, 1u);
-        if (pixel.count > count_before) {
-            atomicAdd(&status.advanced, 1u);
+    // Otherwise the loop ends where the last pixel has been written: code that moves a pixel takes long to compile.
+    if (COUNT_STEPS && has_pixel) {
+        store_pixel(index, pixel);
+        if (pixel.count < dispatch.target_count) {
+            atomicAdd(&status.unfinished, 1u);
+            if (pixel.count > count_before) {
+                atomicAdd(&status.advanced, 1u);
+            }
         }
     }
 }

@@ -134,26 +134,38 @@ fn closest_with_solids(
   } else if (best.triangle != MISS) {
     pair = load_pair(best.triangle);
   }
-  var hit = refine(best.triangle, pair, setup, ray);
-  // On an edge the pair beyond is met, too.
-  let reach = solid_error() + found.error * max_component(abs(ray.direction));
-  let is_inside = min(min(hit.b.x, hit.b.y), hit.b.z) > reach * solid_inverse_height();
-  let is_known = !is_found || (on_pair.triangle != MISS && found.t + found.error < found.rest && is_inside);
-  if (!(found.certain && is_known)) {
-    best = closest_of_listed(setup, ray, camera_ray, seed);
-    hit = refine(best.triangle, load_pair(best.triangle), setup, ray);
+  // At most twice: one piece of code refines what is found by the planes and what all pairs say.
+  var hit = miss(ray);
+  for (var tests_all = false; ; tests_all = true) {
+    if (count_step()) {
+      break;
+    }
+    hit = refine(best.triangle, pair, setup, ray);
+    // On an edge the pair beyond is met, too.
+    let reach = solid_error() + found.error * max_component(abs(ray.direction));
+    let is_inside = min(min(hit.b.x, hit.b.y), hit.b.z) > reach * solid_inverse_height();
+    let is_known = !is_found || (on_pair.triangle != MISS && found.t + found.error < found.rest && is_inside);
+    if (tests_all || (found.certain && is_known)) {
+      break;
+    }
+    best = closest_of_listed(setup, ray, camera_ray, seed, &pair);
   }
   return hit;
 }
 
-// The closest hit of all pairs.
-fn closest_of_listed(setup: RaySetup, ray: Ray, camera_ray: bool, seed: u32) -> ListHit {
+// The closest hit of all pairs, and its pair.
+fn closest_of_listed(setup: RaySetup, ray: Ray, camera_ray: bool, seed: u32, pair: ptr<function, Element>) -> ListHit {
   var hit = nothing_so_far(ray);
   for (var i = 0u; i < LIST_PAIRS; i += 1u) {
     if (count_step()) {
       break;
     }
-    hit = closer_of_listed(hit, load_element(i), i, setup, ray, camera_ray, seed);
+    let other = load_element(i);
+    let closer = closer_of_listed(hit, other, i, setup, ray, camera_ray, seed);
+    if (closer.triangle != hit.triangle) {
+      *pair = other;
+    }
+    hit = closer;
   }
   return hit;
 }

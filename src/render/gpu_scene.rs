@@ -2,7 +2,7 @@
 
 use super::error::RenderError;
 use super::layout::Light;
-use super::paged::{FIRST_PAGED_BINDING, PagedBuffer};
+use super::paged::{FIRST_PAGED_BINDING, PagedBuffer, film_wgsl};
 use super::prepared::Prepared;
 use super::program::device_elements;
 use super::textures::srgb_table;
@@ -51,13 +51,13 @@ impl GpuScene {
             .collect()
     }
 
-    /// The generated `buffers.wgsl`; with `doublewords` it reads the acceleration structure in 64-bit
-    /// integers, which the device must have.
+    /// The generated `buffers.wgsl`; with `doublewords` it reads the acceleration structure and the film in
+    /// 64-bit integers, which the device must have.
     pub fn buffers_wgsl(&self, doublewords: bool) -> String {
         let mut binding = FIRST_PAGED_BINDING;
         let mut text = String::from(
-            "// Generated: large arrays, split over pages where the device asks for it.\n",
-        );
+            "// Generated: the film, and large arrays, split over pages where the device asks for it.\n",
+        ) + &film_wgsl(doublewords);
         for buffer in &self.paged {
             text += &buffer.wgsl(binding, doublewords);
             binding += buffer.pages().len() as u32;

@@ -2,6 +2,7 @@
 
 use bytemuck::Pod;
 
+use super::doublewords;
 use crate::gpu::{Buffer, Device, GpuError};
 
 /// First binding of the large arrays; those below are in `shaders/bindings.wgsl`.
@@ -25,7 +26,21 @@ pub fn large_arrays_wgsl(pages: usize) -> String {
         let binding = FIRST_PAGED_BINDING + (i * pages) as u32;
         paged_wgsl(name, element, accessor, pages, 20, binding)
     };
-    LARGE_ARRAYS.into_iter().enumerate().map(paged).collect()
+    let arrays: String = LARGE_ARRAYS.into_iter().enumerate().map(paged).collect();
+    arrays + &film_wgsl(false)
+}
+
+/// The film's binding and accessors: `load_pixel(index)` and `store_pixel(index, pixel)`.
+pub fn film_wgsl(in_doublewords: bool) -> String {
+    let declaration = |kind: &str| {
+        format!("@group(0) @binding(2) var<storage, read_write> film: array<{kind}>;\n")
+    };
+    if in_doublewords {
+        return doublewords::film_wgsl(declaration);
+    }
+    declaration("FilmPixel")
+        + "fn load_pixel(index: u32) -> FilmPixel {\n    return film[index];\n}\n\
+           fn store_pixel(index: u32, pixel: FilmPixel) {\n    film[index] = pixel;\n}\n"
 }
 
 /// An array that shaders read through `accessor(index)`.
@@ -79,7 +94,7 @@ impl PagedBuffer {
         let (name, element, accessor) = LARGE_ARRAYS[self.array];
         let pages = self.pages.len();
         if doublewords && self.array == 0 {
-            return doublewords_wgsl(pages, self.page_bits, first_binding);
+            return doublewords::elements_wgsl(pages, self.page_bits, first_binding);
         }
         paged_wgsl(
             name,
@@ -118,7 +133,7 @@ fn paged_wgsl(
     text
 }
 
-fn declarations(name: &str, element: &str, pages: usize, first_binding: u32) -> String {
+pub(super) fn declarations(name: &str, element: &str, pages: usize, first_binding: u32) -> String {
     let declare = |page| {
         let binding = first_binding + page as u32;
         format!(
@@ -129,7 +144,7 @@ fn declarations(name: &str, element: &str, pages: usize, first_binding: u32) -> 
 }
 
 /// The body of a function that returns what `read` gives for the page of `index`, at `offset` in it.
-fn by_page(pages: usize, page_bits: u32, read: &dyn Fn(usize) -> String) -> String {
+pub(super) fn by_page(pages: usize, page_bits: u32, read: &dyn Fn(usize) -> String) -> String {
     if pages == 1 {
         return format!("    let offset = index;\n    return {};\n", read(0));
     }
@@ -140,35 +155,5 @@ fn by_page(pages: usize, page_bits: u32, read: &dyn Fn(usize) -> String) -> Stri
         "    let offset = index & {mask}u;\n    switch (index >> {page_bits}u) {{\n{cases}        \
          default: {{ return {}; }}\n    }}\n",
         read(0)
-    )
-}
-
-/// Bindings and accessors of an array of [`Element`](crate::accel::Element)s that are read in double
-/// words, where a device is faster so.
-fn doublewords_wgsl(pages: usize, page_bits: u32, first_binding: u32) -> String {
-    let (name, _, accessor) = LARGE_ARRAYS[0];
-    let mut text = declarations(name, "u64", pages, first_binding);
-    for page in 0..pages {
-        text += &format!("fn {accessor}_{page}(first: u32, q0: u64) -> Element {{\n");
-        for i in 1..8 {
-            text += &format!("    let q{i} = {name}_{page}[first + {i}u];\n");
-        }
-        let word = |i| format!("u32(q{i}), u32(q{i} >> 32u)");
-        let vector = |i| format!("vec4u({}, {})", word(2 * i), word(2 * i + 1));
-        let vectors = [0, 1, 2, 3].map(vector).join(",\n        ");
-        text += &format!("    return Element(\n        {vectors},\n    );\n}}\n");
-    }
-    let start = by_page(pages, page_bits, &|page| {
-        format!("{name}_{page}[8u * offset]")
-    });
-    let rest = by_page(pages, page_bits, &|page| {
-        format!("{accessor}_{page}(8u * offset, start)")
-    });
-    text + &format!(
-        "alias ElementStart = u64;\n\
-         fn {accessor}_start(index: u32) -> ElementStart {{\n{start}}}\n\
-         fn {accessor}_from(index: u32, start: ElementStart) -> Element {{\n{rest}}}\n\
-         fn {accessor}(index: u32) -> Element {{\n    \
-         return {accessor}_from(index, {accessor}_start(index));\n}}\n"
     )
 }

@@ -1,9 +1,11 @@
 //! Access to tables of a few entries: every entry is read at an address that is the same for all lanes, and the one that
 //! a lane asks for is selected. A CPU reads such an address once, where entries of their own are gathered lane by lane.
+//! Fields of materials that are plain ([`plain_literal`]) are not read at all.
 
 use std::fmt::Write;
 
-use super::layout::{LIGHT_KIND_SHIFT, LIGHT_TRIANGLE};
+use super::layout::{LIGHT_KIND_SHIFT, LIGHT_TRIANGLE, Material};
+use super::plain_fields::plain_literal;
 use super::prepared::Prepared;
 use crate::shader::{ShaderError, ShaderLibrary, VirtualFiles};
 
@@ -13,10 +15,10 @@ const SHORT: usize = 8;
 /// Pairs of triangles that emit, of which all are read; an element is four times as large as a light.
 const SHORT_PAIRS: usize = 4;
 
-/// Numbers of entries of a scene's tables, 0 where they are not known.
+/// What is known of a scene's tables: materials, and numbers of entries; nothing and 0 where they are not known.
 #[derive(Default)]
-struct Counts {
-    materials: usize,
+struct Known<'a> {
+    materials: &'a [Material],
     textures: usize,
     lights: usize,
 }
@@ -26,12 +28,12 @@ struct Counts {
 /// # Errors
 /// `types.wgsl` of the library, where the fields of structs are, cannot be read.
 pub fn table_files(library: &ShaderLibrary, scene: &Prepared) -> Result<VirtualFiles, ShaderError> {
-    let counts = Counts {
-        materials: scene.materials.len(),
+    let known = Known {
+        materials: &scene.materials,
         textures: scene.textures.textures.len(),
         lights: scene.lights.table.len(),
     };
-    files(library, &counts, &short_pairs(scene))
+    files(library, &known, &short_pairs(scene))
 }
 
 /// The same for a scene that is not known: no table is short.
@@ -39,7 +41,7 @@ pub fn table_files(library: &ShaderLibrary, scene: &Prepared) -> Result<VirtualF
 /// # Errors
 /// As [`table_files`].
 pub fn long_tables(library: &ShaderLibrary) -> Result<VirtualFiles, ShaderError> {
-    files(library, &Counts::default(), &[])
+    files(library, &Known::default(), &[])
 }
 
 /// `material_table.wgsl`, for each field of a material `fn material_FIELD(i: u32)`, and `fn texture_at(i: u32) -> Texture`;
@@ -47,7 +49,7 @@ pub fn long_tables(library: &ShaderLibrary) -> Result<VirtualFiles, ShaderError>
 /// an emissive triangle's pair, one of those of the lights `firsts`, if there are such.
 fn files(
     library: &ShaderLibrary,
-    counts: &Counts,
+    known: &Known<'_>,
     firsts: &[usize],
 ) -> Result<VirtualFiles, ShaderError> {
     let types = library.read("types.wgsl")?;
@@ -56,14 +58,17 @@ fn files(
         format!("fn {name}(i: u32) -> {kind} {{\n{body}}}\n")
     };
     let material = |(field, kind): &(&str, &str)| {
-        let entry = |i: &str| format!("materials[{i}].{field}");
-        accessor(&format!("material_{field}"), kind, counts.materials, &entry)
+        let (name, count) = (format!("material_{field}"), known.materials.len());
+        match plain_literal(types, known.materials, field, kind) {
+            Some(literal) => accessor(&name, kind, 0, &|_| literal.clone()),
+            None => accessor(&name, kind, count, &|i| format!("materials[{i}].{field}")),
+        }
     };
     let materials: String = fields_of(types, "Material").iter().map(material).collect();
     let texture = |i: &str| format!("textures[{i}]");
-    let textures = accessor("texture_at", "Texture", counts.textures, &texture);
+    let textures = accessor("texture_at", "Texture", known.textures, &texture);
     let light = |i: &str| format!("lights[{i}]");
-    let lights = accessor("light_at", "Light", counts.lights, &light);
+    let lights = accessor("light_at", "Light", known.lights, &light);
     Ok(VirtualFiles::from([
         (
             "light_table.wgsl".into(),
@@ -91,7 +96,7 @@ fn parts_of(types: &str, kind: &str) -> Vec<String> {
 }
 
 /// Names and types of the fields of a struct in a text; none if it has no such struct.
-fn fields_of<'a>(text: &'a str, name: &str) -> Vec<(&'a str, &'a str)> {
+pub(super) fn fields_of<'a>(text: &'a str, name: &str) -> Vec<(&'a str, &'a str)> {
     let mut lines = text.lines();
     if !lines.any(|line| line.trim() == format!("struct {name} {{")) {
         return Vec::new();
