@@ -2,68 +2,120 @@
 
 use super::paged::{LARGE_ARRAYS, by_page, declarations};
 
-/// Double words of an [`Element`](crate::accel::Element) and of a [`FilmPixel`](super::layout::FilmPixel).
-const COUNT: usize = 8;
+/// What the entries of arrays that are read in double words consist of: in the order of `shaders/types.wgsl` the types of
+/// their fields.
+const ENTRIES: [(&str, &[&str]); 4] = [
+    ("Element", &["vec4u", "vec4u", "vec4u", "vec4u"]),
+    ("vec4f", &["f32", "f32", "f32", "f32"]),
+    ("LightNode", &["vec3f", "u32", "u32", "u32", "f32", "u32"]),
+    (
+        "FilmPixel",
+        &[
+            "vec3f", "u32", "vec3f", "u32", "vec3f", "u32", "vec3f", "u32",
+        ],
+    ),
+];
 
-/// Bindings and accessors of an array of elements, in `pages` pages of 2^`page_bits`.
-pub(super) fn elements_wgsl(pages: usize, page_bits: u32, first_binding: u32) -> String {
-    let (name, _, accessor) = LARGE_ARRAYS[0];
+/// The types of an entry's fields, if it is read in double words.
+pub(super) fn entry_fields(entry: &str) -> Option<&'static [&'static str]> {
+    let (_, fields) = ENTRIES.iter().find(|(name, _)| *name == entry)?;
+    Some(fields)
+}
+
+/// Numbers in a value of a type.
+fn length(kind: &str) -> usize {
+    match kind.strip_prefix("vec") {
+        Some(rest) => usize::from(rest.as_bytes()[0] - b'0'),
+        None => 1,
+    }
+}
+
+/// Double words of an entry with such fields.
+fn doublewords(fields: &[&str]) -> usize {
+    fields.iter().map(|kind| length(kind)).sum::<usize>() / 2
+}
+
+/// One of the words of the double words `q0`, `q1`, ...
+fn word(i: usize) -> String {
+    let shift = if i % 2 == 0 { "" } else { " >> 32u" };
+    format!("u32(q{}{shift})", i / 2)
+}
+
+/// The entry that the double words `q0`, `q1`, ... are.
+fn entry_of(entry: &str, fields: &[&str]) -> String {
+    let mut next = 0;
+    let mut field = |kind: &&str| {
+        let words: Vec<_> = (next..next + length(kind)).map(word).collect();
+        next += words.len();
+        let words = words.join(", ");
+        match *kind {
+            "u32" => words,
+            "f32" => format!("bitcast<f32>({words})"),
+            "vec3f" => format!("bitcast<vec3f>(vec3u({words}))"),
+            _ => format!("{kind}({words})"),
+        }
+    };
+    let fields: Vec<_> = fields.iter().map(&mut field).collect();
+    format!("{entry}(\n        {},\n    )", fields.join(",\n        "))
+}
+
+/// Bindings and accessor of an array with entries of such fields, in `pages` pages of 2^`page_bits`.
+pub(super) fn array_wgsl(
+    array: usize,
+    fields: &[&str],
+    pages: usize,
+    page_bits: u32,
+    first_binding: u32,
+) -> String {
+    let (name, entry, accessor) = LARGE_ARRAYS[array];
+    let count = doublewords(fields);
     let mut text = declarations(name, "u64", pages, first_binding);
     for page in 0..pages {
-        let reads: String = (1..COUNT)
+        let reads: String = (1..count)
             .map(|i| format!("    let q{i} = {name}_{page}[first + {i}u];\n"))
             .collect();
-        let vector = |i: usize| format!("vec4u({}, {})", words(2 * i), words(2 * i + 1));
-        let vectors = [0, 1, 2, 3].map(vector).join(",\n        ");
+        let value = entry_of(entry, fields);
         text += &format!(
-            "fn {accessor}_{page}(first: u32, q0: u64) -> Element {{\n{reads}    \
-             return Element(\n        {vectors},\n    );\n}}\n"
+            "fn {accessor}_{page}(first: u32, q0: u64) -> {entry} {{\n{reads}    return {value};\n}}\n"
         );
     }
     let start = by_page(pages, page_bits, &|page| {
-        format!("{name}_{page}[8u * offset]")
+        format!("{name}_{page}[{count}u * offset]")
     });
     let rest = by_page(pages, page_bits, &|page| {
-        format!("{accessor}_{page}(8u * offset, start)")
+        format!("{accessor}_{page}({count}u * offset, start)")
     });
     text + &format!(
-        "alias ElementStart = u64;\n\
-         fn {accessor}_start(index: u32) -> ElementStart {{\n{start}}}\n\
-         fn {accessor}_from(index: u32, start: ElementStart) -> Element {{\n{rest}}}\n\
-         fn {accessor}(index: u32) -> Element {{\n    \
+        "fn {accessor}_start(index: u32) -> u64 {{\n{start}}}\n\
+         fn {accessor}_from(index: u32, start: u64) -> {entry} {{\n{rest}}}\n\
+         fn {accessor}(index: u32) -> {entry} {{\n    \
          return {accessor}_from(index, {accessor}_start(index));\n}}\n"
     )
 }
 
-/// Both words of double word `q{i}`.
-fn words(i: usize) -> String {
-    format!("u32(q{i}), u32(q{i} >> 32u)")
-}
-
 /// The film's binding and accessors, as [`film_wgsl`](super::paged::film_wgsl) has them.
 pub(super) fn film_wgsl(declaration: impl Fn(&str) -> String) -> String {
+    let (entry, fields) = ENTRIES[3];
+    let count = doublewords(fields);
+    let reads: String = (0..count)
+        .map(|i| format!("    let q{i} = film[{count}u * index + {i}u];\n"))
+        .collect();
     let vectors = ["sum", "sum_low", "square", "square_low"];
     let scalars = ["count", "non_finite", "closest_rays", "any_rays"];
-    let mut reads = String::new();
-    let mut writes = String::new();
-    for i in 0..COUNT {
+    let write = |i: usize| {
         let (vector, scalar) = (vectors[i / 2], scalars[i / 2]);
         let float = |component| format!("bitcast<u32>(pixel.{vector}.{component})");
         let [low, high] = match i % 2 {
             0 => [float("x"), float("y")],
             _ => [float("z"), format!("pixel.{scalar}")],
         };
-        reads += &format!("    let q{i} = film[8u * index + {i}u];\n");
-        writes += &format!("    film[8u * index + {i}u] = u64({low}) | (u64({high}) << 32u);\n");
-    }
-    let part = |i: usize| {
-        let (low, high) = (words(2 * i), 2 * i + 1);
-        format!("bitcast<vec3f>(vec3u({low}, u32(q{high}))), u32(q{high} >> 32u)")
+        format!("    film[{count}u * index + {i}u] = u64({low}) | (u64({high}) << 32u);\n")
     };
-    let parts = [0, 1, 2, 3].map(part).join(",\n        ");
+    let writes: String = (0..count).map(write).collect();
+    let value = entry_of(entry, fields);
     declaration("u64")
         + &format!(
-            "fn load_pixel(index: u32) -> FilmPixel {{\n{reads}    return FilmPixel(\n        {parts},\n    );\n}}\n\
+            "fn load_pixel(index: u32) -> FilmPixel {{\n{reads}    return {value};\n}}\n\
              fn store_pixel(index: u32, pixel: FilmPixel) {{\n{writes}}}\n"
         )
 }

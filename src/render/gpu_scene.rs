@@ -51,7 +51,7 @@ impl GpuScene {
             .collect()
     }
 
-    /// The generated `buffers.wgsl`; with `doublewords` it reads the acceleration structure and the film in
+    /// The generated `buffers.wgsl`; with `doublewords` it reads what has an even number of words in
     /// 64-bit integers, which the device must have.
     pub fn buffers_wgsl(&self, doublewords: bool) -> String {
         let mut binding = FIRST_PAGED_BINDING;

@@ -2,7 +2,7 @@
 
 use bytemuck::Pod;
 
-use super::doublewords;
+use super::doublewords::{self, entry_fields};
 use crate::gpu::{Buffer, Device, GpuError};
 
 /// First binding of the large arrays; those below are in `shaders/bindings.wgsl`.
@@ -88,13 +88,25 @@ impl PagedBuffer {
         self.bytes
     }
 
-    /// The text that declares the pages from `first_binding` on, and the accessor. Elements of the
-    /// acceleration structure may be read in `doublewords`.
-    pub fn wgsl(&self, first_binding: u32, doublewords: bool) -> String {
+    /// The text that declares the pages from `first_binding` on, and the accessor. What has an even number of words may be
+    /// read in double words.
+    pub fn wgsl(&self, first_binding: u32, in_doublewords: bool) -> String {
         let (name, element, accessor) = LARGE_ARRAYS[self.array];
         let pages = self.pages.len();
-        if doublewords && self.array == 0 {
-            return doublewords::elements_wgsl(pages, self.page_bits, first_binding);
+        if let Some(fields) = entry_fields(element).filter(|_| in_doublewords) {
+            let alias = if self.array == 0 {
+                "alias ElementStart = u64;\n"
+            } else {
+                ""
+            };
+            return alias.to_owned()
+                + &doublewords::array_wgsl(
+                    self.array,
+                    fields,
+                    pages,
+                    self.page_bits,
+                    first_binding,
+                );
         }
         paged_wgsl(
             name,

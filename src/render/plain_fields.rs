@@ -6,21 +6,61 @@ use super::layout::{Material, NONE, layouts};
 use super::short_tables::fields_of;
 use crate::shader::StructLayout;
 
-/// The literal for a field of `Material`, of a type in the text `types`, if the field is plain in all materials that are used.
-pub(super) fn plain_literal(
-    types: &str,
-    materials: &[Material],
-    field: &str,
-    kind: &str,
-) -> Option<String> {
-    let layout = layout_of("Material")?;
-    let field = layout.fields.iter().find(|f| f.name == field)?;
-    // What no instance shows is all zeros.
-    let mut used = materials.iter().filter(|m| **m != Material::default());
-    let bytes = |m| &bytemuck::bytes_of::<Material>(m)[field.offset..field.offset + field.size];
-    let first = bytes(used.next()?);
-    let same = used.all(|m| bytes(m) == first);
-    same.then(|| literal(types, kind, bytemuck::cast_slice(first)))?
+/// The materials of a scene, where their fields are plain.
+pub(super) struct PlainFields<'a> {
+    /// The text with the shader's structs.
+    types: &'a str,
+    layout: Option<StructLayout>,
+    /// What no instance shows is all zeros, and not among them.
+    used: Vec<&'a Material>,
+}
+
+impl<'a> PlainFields<'a> {
+    /// Of materials whose struct, and those that it contains, are in the text `types`.
+    pub fn new(types: &'a str, materials: &'a [Material]) -> Self {
+        let is_used = |m: &&Material| **m != Material::default();
+        Self {
+            types,
+            layout: layout_of("Material"),
+            used: materials.iter().filter(is_used).collect(),
+        }
+    }
+
+    /// The value of a field, of a type, for which `read` stands where it is not plain: a literal, `read` itself, or the
+    /// struct of both. None if nothing of it is plain.
+    pub fn value(&self, field: &str, kind: &str, read: &str) -> Option<String> {
+        let layout = self.layout.as_ref()?;
+        let field = layout.fields.iter().find(|f| f.name == field)?;
+        self.value_at(field.offset, field.size, kind, read)
+    }
+
+    fn value_at(&self, offset: usize, size: usize, kind: &str, read: &str) -> Option<String> {
+        match layout_of(kind) {
+            Some(layout) => self.structure(offset, &layout, read),
+            None => literal(kind, self.shared_words(offset, size)?),
+        }
+    }
+
+    /// The words that all materials have somewhere, if they are the same.
+    fn shared_words(&self, offset: usize, size: usize) -> Option<&'a [u32]> {
+        let words = |m: &'a Material| &bytemuck::bytes_of(m)[offset..offset + size];
+        let (first, others) = self.used.split_first()?;
+        let same = others.iter().all(|m| words(m) == words(first));
+        same.then(|| bytemuck::cast_slice(words(first)))
+    }
+
+    fn structure(&self, offset: usize, layout: &StructLayout, read: &str) -> Option<String> {
+        let mut plain = false;
+        let mut values = Vec::new();
+        for (name, kind) in fields_of(self.types, layout.name) {
+            let field = layout.fields.iter().find(|f| f.name == name)?;
+            let part = format!("{read}.{name}");
+            let value = self.value_at(offset + field.offset, field.size, kind, &part);
+            plain |= value.is_some();
+            values.push(value.unwrap_or(part));
+        }
+        plain.then(|| format!("{}({})", layout.name, values.join(", ")))
+    }
 }
 
 fn layout_of(name: &str) -> Option<StructLayout> {
@@ -28,19 +68,16 @@ fn layout_of(name: &str) -> Option<StructLayout> {
 }
 
 /// A value of a type, if it is plain.
-fn literal(types: &str, kind: &str, words: &[u32]) -> Option<String> {
-    let list = |words: &[u32]| -> Option<String> {
-        let numbers = words.iter().map(|word| number(*word));
-        Some(numbers.collect::<Option<Vec<_>>>()?.join(", "))
-    };
+fn literal(kind: &str, words: &[u32]) -> Option<String> {
     match (kind, words) {
         ("u32", [0]) => Some("0u".into()),
         ("u32", [NONE]) => Some(format!("{NONE}u")),
         ("f32", [word]) => number(*word).map(str::to_owned),
-        ("vec2f", [_, _]) | ("vec3f", [_, _, _]) | ("vec4f", [_, _, _, _]) => {
-            Some(format!("{kind}({})", list(words)?))
+        ("vec2f" | "vec3f" | "vec4f", _) => {
+            let numbers: Option<Vec<_>> = words.iter().map(|word| number(*word)).collect();
+            Some(format!("{kind}({})", numbers?.join(", ")))
         }
-        _ => structure(types, kind, words),
+        _ => None,
     }
 }
 
@@ -52,13 +89,52 @@ fn number(bits: u32) -> Option<&'static str> {
     }
 }
 
-fn structure(types: &str, name: &str, words: &[u32]) -> Option<String> {
-    let layout = layout_of(name)?;
-    let kinds = fields_of(types, name);
-    let field = |f: &crate::shader::FieldLayout| {
-        let (_, kind) = kinds.iter().find(|(name, _)| *name == f.name)?;
-        literal(types, kind, &words[f.offset / 4..(f.offset + f.size) / 4])
-    };
-    let fields: Option<Vec<_>> = layout.fields.iter().map(field).collect();
-    Some(format!("{name}({})", fields?.join(", ")))
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::layout::TextureSlot;
+    use crate::shader::ShaderLibrary;
+
+    #[test]
+    fn what_all_used_materials_have_alike_and_plain_is_a_literal() {
+        let slot = TextureSlot {
+            matrix: [1.0, 0.0, 0.0, 1.0],
+            texture: NONE,
+            ..TextureSlot::default()
+        };
+        let one = Material {
+            specular_color: [1.0; 3],
+            roughness: 0.5,
+            base_color_texture: slot,
+            normal_texture: slot,
+            ..Material::default()
+        };
+        let other = Material {
+            metallic: 1.0,
+            normal_texture: TextureSlot { texture: 3, ..slot },
+            ..one
+        };
+        // The last one is shown by no instance.
+        let materials = [one, other, Material::default()];
+        let library = ShaderLibrary::embedded();
+        let types = library.read("types.wgsl").expect("types.wgsl");
+        let plain = PlainFields::new(types, &materials);
+        let value = |field, kind| plain.value(field, kind, "read");
+        let is = |text: &str| Some(text.to_owned());
+        assert_eq!(value("specular_color", "vec3f"), is("vec3f(1.0, 1.0, 1.0)"));
+        assert_eq!(value("sheen_roughness", "f32"), is("0.0"));
+        assert_eq!(value("flags", "u32"), is("0u"));
+        assert_eq!(value("roughness", "f32"), None, "neither zero nor one");
+        assert_eq!(value("metallic", "f32"), None, "not alike");
+        assert_eq!(value("no_such_field", "f32"), None);
+        let matrix = "TextureSlot(vec4f(1.0, 0.0, 0.0, 1.0), vec2f(0.0, 0.0)";
+        let none = format!("{matrix}, {NONE}u, 0u)");
+        assert_eq!(value("base_color_texture", "TextureSlot"), Some(none));
+        let read = format!("{matrix}, read.texture, 0u)");
+        assert_eq!(value("normal_texture", "TextureSlot"), Some(read));
+        assert_eq!(
+            PlainFields::new(types, &[]).value("metallic", "f32", "read"),
+            None
+        );
+    }
 }

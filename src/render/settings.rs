@@ -38,7 +38,7 @@ pub struct Settings {
     /// Samples a pixel in a pass over the picture, instead of as many as take about two seconds. No bit
     /// of the picture depends on it.
     pub pass_samples: Option<u64>,
-    /// Read the acceleration structure and the film in 64-bit integers, which the device must have
+    /// Read the acceleration structure, the film and other large arrays in 64-bit integers, which the device must have
     /// ([`Device::prefers_doublewords`](crate::gpu::Device::prefers_doublewords)). No bit of the picture
     /// depends on it.
     pub doublewords: bool,

@@ -1,11 +1,11 @@
 //! Access to tables of a few entries: every entry is read at an address that is the same for all lanes, and the one that
 //! a lane asks for is selected. A CPU reads such an address once, where entries of their own are gathered lane by lane.
-//! Fields of materials that are plain ([`plain_literal`]) are not read at all.
+//! Fields of materials that are plain ([`PlainFields`]) are not read at all.
 
 use std::fmt::Write;
 
 use super::layout::{LIGHT_KIND_SHIFT, LIGHT_TRIANGLE, Material};
-use super::plain_fields::plain_literal;
+use super::plain_fields::PlainFields;
 use super::prepared::Prepared;
 use crate::shader::{ShaderError, ShaderLibrary, VirtualFiles};
 
@@ -53,22 +53,26 @@ fn files(
     firsts: &[usize],
 ) -> Result<VirtualFiles, ShaderError> {
     let types = library.read("types.wgsl")?;
-    let accessor = |name: &str, kind: &str, count: usize, entry: &dyn Fn(&str) -> String| {
+    let table = |name: &str, kind: &str, count: usize, entry: &dyn Fn(&str) -> String| {
         let body = table_access(types, kind, count, entry);
         format!("fn {name}(i: u32) -> {kind} {{\n{body}}}\n")
     };
+    let plain = PlainFields::new(types, known.materials);
     let material = |(field, kind): &(&str, &str)| {
-        let (name, count) = (format!("material_{field}"), known.materials.len());
-        match plain_literal(types, known.materials, field, kind) {
-            Some(literal) => accessor(&name, kind, 0, &|_| literal.clone()),
-            None => accessor(&name, kind, count, &|i| format!("materials[{i}].{field}")),
-        }
+        let entry = |i: &str| format!("materials[{i}].{field}");
+        let read = |name: &str| table(name, kind, known.materials.len(), &entry);
+        let Some(value) = plain.value(field, kind, &format!("read_{field}(i)")) else {
+            return read(&format!("material_{field}"));
+        };
+        // What of it is no literal is read.
+        read(&format!("read_{field}"))
+            + &format!("fn material_{field}(i: u32) -> {kind} {{\n    return {value};\n}}\n")
     };
     let materials: String = fields_of(types, "Material").iter().map(material).collect();
     let texture = |i: &str| format!("textures[{i}]");
-    let textures = accessor("texture_at", "Texture", known.textures, &texture);
+    let textures = table("texture_at", "Texture", known.textures, &texture);
     let light = |i: &str| format!("lights[{i}]");
-    let lights = accessor("light_at", "Light", known.lights, &light);
+    let lights = table("light_at", "Light", known.lights, &light);
     Ok(VirtualFiles::from([
         (
             "light_table.wgsl".into(),
