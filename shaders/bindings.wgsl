@@ -1,5 +1,5 @@
 // Buffers of fixed size. The large ones, which may be split over pages, are in the generated
-// buffers.wgsl and read through load_element, load_index, load_vertex_word,
+// buffers.wgsl and read through load_element, load_index, load_vertex_pair,
 // load_texel_word, load_environment_texel, load_environment_cdf and load_light_node; there is the film, too (binding 2), behind
 // load_pixel and store_pixel. Of a material each
 // field has a function in the generated material_table.wgsl, fn material_FIELD(i: u32); a texture is texture_at(i).

@@ -12,7 +12,7 @@ fn coverage(triangle: Triangle, b: vec3f) -> f32 {
     }
     var alpha = material_base_color(triangle.material).a;
     if (HAS_COLORS && (triangle.flags & TRIANGLE_COLORS) != 0u) {
-        alpha *= interpolate_vec4(vertex_words(triangle.index) + COLOR_OFFSET, b).a;
+        alpha *= interpolate_vec4(vertex_pairs(triangle.index) + COLOR_OFFSET, b).a;
     }
     let slot = material_base_color_texture(triangle.material);
     if (HAS_BASE_COLOR_TEXTURE && slot.texture != NONE) {

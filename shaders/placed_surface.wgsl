@@ -53,28 +53,28 @@ fn place_surface(s: ptr<function, Surface>, triangle: Triangle) {
 
 // The interpolated normal of three vertices, each a unit vector in the world; in an instance they are stored in
 // the space of its tree.
-fn interpolate_placed_normal(id: u32, words: vec3u, b: vec3f) -> vec3f {
+fn interpolate_placed_normal(id: u32, pairs: vec3u, b: vec3f) -> vec3f {
     let hit = instance_hit(id);
     if (!hit.is_instance) {
-        return interpolate_vec3(words, b);
+        return interpolate_vec3(pairs, b);
     }
     let p = placement(hit.record);
-    let n0 = unit_or_zero(placed_normal(p, vertex_vec3(words.x)));
-    let n1 = unit_or_zero(placed_normal(p, vertex_vec3(words.y)));
-    let n2 = unit_or_zero(placed_normal(p, vertex_vec3(words.z)));
+    let n0 = unit_or_zero(placed_normal(p, vertex_vec3(pairs.x)));
+    let n1 = unit_or_zero(placed_normal(p, vertex_vec3(pairs.y)));
+    let n2 = unit_or_zero(placed_normal(p, vertex_vec3(pairs.z)));
     return b.x * n0 + b.y * n1 + b.z * n2;
 }
 
 // The same for tangents, which follow the surface.
-fn interpolate_placed_tangent(id: u32, words: vec3u, b: vec3f) -> vec4f {
+fn interpolate_placed_tangent(id: u32, pairs: vec3u, b: vec3f) -> vec4f {
     let hit = instance_hit(id);
     if (!hit.is_instance) {
-        return interpolate_vec4(words, b);
+        return interpolate_vec4(pairs, b);
     }
     let p = placement(hit.record);
-    let t0 = vertex_vec4(words.x);
-    let t1 = vertex_vec4(words.y);
-    let t2 = vertex_vec4(words.z);
+    let t0 = vertex_vec4(pairs.x);
+    let t1 = vertex_vec4(pairs.y);
+    let t2 = vertex_vec4(pairs.z);
     let u0 = unit_or_zero(placed_direction(p, t0.xyz));
     let u1 = unit_or_zero(placed_direction(p, t1.xyz));
     let u2 = unit_or_zero(placed_direction(p, t2.xyz));

@@ -94,7 +94,7 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
     var normal = geometric;
     var tangent = vec4f(0.0);
     if (VERTEX_STRIDE > 0u) {
-        let first = vertex_words(triangle.index);
+        let first = vertex_pairs(triangle.index);
         if (HAS_NORMALS && (triangle.flags & TRIANGLE_FLAT) == 0u) {
             if (HAS_INSTANCES) {
                 normal = interpolate_placed_normal((*s).triangle, first + NORMAL_OFFSET, b);

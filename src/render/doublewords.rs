@@ -4,8 +4,9 @@ use super::paged::{LARGE_ARRAYS, by_page, declarations};
 
 /// What the entries of arrays that are read in double words consist of: in the order of `shaders/types.wgsl` the types of
 /// their fields.
-const ENTRIES: [(&str, &[&str]); 4] = [
+const ENTRIES: [(&str, &[&str]); 5] = [
     ("Element", &["vec4u", "vec4u", "vec4u", "vec4u"]),
+    ("vec2f", &["f32", "f32"]),
     ("vec4f", &["f32", "f32", "f32", "f32"]),
     ("LightNode", &["vec3f", "u32", "u32", "u32", "f32", "u32"]),
     (
@@ -95,7 +96,7 @@ pub(super) fn array_wgsl(
 
 /// The film's binding and accessors, as [`film_wgsl`](super::paged::film_wgsl) has them.
 pub(super) fn film_wgsl(declaration: impl Fn(&str) -> String) -> String {
-    let (entry, fields) = ENTRIES[3];
+    let (entry, fields) = ENTRIES[4];
     let count = doublewords(fields);
     let reads: String = (0..count)
         .map(|i| format!("    let q{i} = film[{count}u * index + {i}u];\n"))

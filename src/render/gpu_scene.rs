@@ -105,7 +105,7 @@ fn paged_buffers(device: &Device, scene: &Prepared) -> Result<Vec<PagedBuffer>, 
     Ok(vec![
         PagedBuffer::upload(device, 0, &device_elements(&scene.bvh))?,
         words(device, 1, indices)?,
-        PagedBuffer::upload(device, 2, &scene.vertex_words)?,
+        PagedBuffer::upload(device, 2, scene.vertex_words.as_chunks::<2>().0)?,
         words(device, 3, &scene.textures.words)?,
         PagedBuffer::upload(device, 4, &environment.texels)?,
         words(device, 5, &environment.cdf)?,

@@ -12,7 +12,7 @@ pub const FIRST_PAGED_BINDING: u32 = 16;
 pub const LARGE_ARRAYS: [(&str, &str, &str); 7] = [
     ("elements", "Element", "load_element"),
     ("indices", "u32", "load_index"),
-    ("vertex_words", "f32", "load_vertex_word"),
+    ("vertex_words", "vec2f", "load_vertex_pair"),
     ("texel_words", "u32", "load_texel_word"),
     ("environment_texels", "vec4f", "load_environment_texel"),
     ("environment_cdf", "u32", "load_environment_cdf"),

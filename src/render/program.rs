@@ -162,7 +162,7 @@ pub fn constants(
     workgroup_bytes: u32,
 ) -> Vec<(&'static str, Constant)> {
     let format = &scene.vertex_format;
-    let offset = |o: Option<u32>| Constant::U32(o.unwrap_or(0));
+    let offset = |o: Option<u32>| Constant::U32(o.unwrap_or(0) / 2);
     let asked = |names: &[&str]| names.iter().any(|name| scene.features.is_asked_for(name));
     let punctual = ["point_light", "spot_light", "directional_light"];
     let lights = asked(&["emissive", "environment"]) || asked(&punctual);
@@ -203,7 +203,7 @@ pub fn constants(
             Constant::U32(scene.bsdf_tables.stretched),
         ),
         ("SPECTRUM_TABLE", Constant::U32(scene.bsdf_tables.spectrum)),
-        ("VERTEX_STRIDE", Constant::U32(format.stride)),
+        ("VERTEX_STRIDE", Constant::U32(format.stride / 2)),
         ("NORMAL_OFFSET", offset(format.normals)),
         ("TANGENT_OFFSET", offset(format.tangents)),
         ("UV0_OFFSET", offset(format.uv0)),

@@ -5,10 +5,11 @@ use rayon::prelude::*;
 
 use crate::scene::{Features, Mesh};
 
-/// Offsets, in words of 4 bytes, of each attribute inside a vertex; `None` if no vertex carries it.
+/// Offsets, in words of 4 bytes, of each attribute inside a vertex; `None` if no vertex carries it. All are even, and so is
+/// the stride: the device reads words in pairs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct VertexFormat {
-    /// Shading normal, 3 words.
+    /// Shading normal, 3 words and one that is unused.
     pub normals: Option<u32>,
     /// Tangent and sign, 4 words.
     pub tangents: Option<u32>,
@@ -49,7 +50,7 @@ impl VertexFormat {
         })
     }
 
-    /// Lays out what is needed, without gaps.
+    /// Lays out what is needed.
     pub fn new(needs: VertexNeeds) -> Self {
         let mut stride = 0;
         let mut place = |needed: bool, words: u32| {
@@ -57,7 +58,7 @@ impl VertexFormat {
             stride += if needed { words } else { 0 };
             needed.then_some(offset)
         };
-        let normals = place(needs.normals, 3);
+        let normals = place(needs.normals, 4);
         let tangents = place(needs.tangents, 4);
         let uv0 = place(needs.uv0, 2);
         let uv1 = place(needs.uv1, 2);
