@@ -4,23 +4,8 @@
 #include "bsdf.wgsl"
 #include "medium.wgsl"
 
-// The texture of a slot, or white.
-fn sample_slot(slot: TextureSlot, s: Surface) -> vec4f {
-    if (slot.texture == NONE) {
-        return vec4f(1.0);
-    }
-    return sample_texture(slot, s.uv0, s.uv1);
-}
-
 fn base_color_at(s: Surface) -> vec4f {
-    var color = material_base_color(s.material) * s.color;
-    if (HAS_BASE_COLOR_TEXTURE) {
-        let slot = material_base_color_texture(s.material);
-        if (slot.texture != NONE) {
-            color *= sample_texture(slot, s.uv0, s.uv1);
-        }
-    }
-    return color;
+    return material_base_color(s.material) * s.color * s.texels.base_color;
 }
 
 // Radiance that the surface emits towards wo. Emission is one-sided unless the material is double-sided.
@@ -35,25 +20,22 @@ fn emitted_radiance(s: Surface) -> vec3f {
     if (s.back_face && (flags & MATERIAL_DOUBLE_SIDED) == 0u) {
         return vec3f(0.0);
     }
-    return emissive_at(s.material, s.uv0, s.uv1, dot(s.wo, s.normal));
+    return emissive_at(s.material, s.texels, dot(s.wo, s.normal));
 }
 
-// Emitted radiance at a cosine to the triangle's normal: a clear coat reflects a part of it back.
-fn emissive_at(material: u32, uv0: vec2f, uv1: vec2f, cos_theta: f32) -> vec3f {
+// Emitted radiance at a cosine to the triangle's normal: a clear coat reflects a part of it back. Of the texels those of
+// emission and of the clear coat are needed.
+fn emissive_at(material: u32, texels: Texels, cos_theta: f32) -> vec3f {
     var emissive = material_emissive(material);
     if (HAS_CLEARCOAT && material_clearcoat(material) > 0.0) {
         var clearcoat = material_clearcoat(material);
-        let slot = material_clearcoat_texture(material);
-        if (HAS_CLEARCOAT_TEXTURE && slot.texture != NONE) {
-            clearcoat *= sample_texture(slot, uv0, uv1).r;
+        if (HAS_CLEARCOAT_TEXTURE) {
+            clearcoat *= texels.clearcoat.r;
         }
         emissive *= 1.0 - clearcoat * clearcoat_fresnel(abs(cos_theta));
     }
     if (HAS_EMISSIVE_TEXTURE) {
-        let slot = material_emissive_texture(material);
-        if (slot.texture != NONE) {
-            emissive *= sample_texture(slot, uv0, uv1).rgb;
-        }
+        emissive *= texels.emissive.rgb;
     }
     return emissive;
 }
@@ -73,7 +55,7 @@ fn bsdf_parameters(s: Surface, crossing: Crossing) -> BsdfParameters {
     m.metallic = material_metallic(s.material);
     m.roughness = material_roughness(s.material);
     if (HAS_METALLIC_ROUGHNESS_TEXTURE) {
-        let texel = sample_slot(material_metallic_roughness_texture(s.material), s);
+        let texel = s.texels.metallic_roughness;
         m.roughness *= texel.g;
         m.metallic *= texel.b;
     }
@@ -115,10 +97,10 @@ fn add_specular_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
     (*m).specular = material_specular(s.material);
     (*m).specular_color = material_specular_color(s.material);
     if (HAS_SPECULAR_TEXTURE) {
-        (*m).specular *= sample_slot(material_specular_texture(s.material), s).a;
+        (*m).specular *= s.texels.specular.a;
     }
     if (HAS_SPECULAR_COLOR_TEXTURE) {
-        let texel = sample_slot(material_specular_color_texture(s.material), s);
+        let texel = s.texels.specular_color;
         (*m).specular_color *= texel.rgb;
         if (HAS_GLOSSINESS_TEXTURE && (material_flags(s.material) & MATERIAL_GLOSSINESS) != 0u) {
             (*m).roughness = 1.0 - (1.0 - (*m).roughness) * texel.a;
@@ -129,7 +111,7 @@ fn add_specular_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
 fn add_transmission_parameters(m: ptr<function, BsdfParameters>, s: Surface, crossing: Crossing) {
     (*m).transmission = material_transmission(s.material);
     if (HAS_TRANSMISSION_TEXTURE) {
-        (*m).transmission *= sample_slot(material_transmission_texture(s.material), s).r;
+        (*m).transmission *= s.texels.transmission.r;
     }
     (*m).glass_table = material_glass_table(s.material) + select(0u, ALBEDO_SIZE, s.back_face && !(*m).thin);
     if (crossing.near != NONE && crossing.far != NONE) {
@@ -143,8 +125,8 @@ fn add_diffuse_transmission_parameters(m: ptr<function, BsdfParameters>, s: Surf
     (*m).diffuse_transmission = material_diffuse_transmission(s.material);
     (*m).diffuse_transmission_color = material_diffuse_transmission_color(s.material);
     if (HAS_DIFFUSE_TRANSMISSION_TEXTURE) {
-        (*m).diffuse_transmission *= sample_slot(material_diffuse_transmission_texture(s.material), s).a;
-        (*m).diffuse_transmission_color *= sample_slot(material_diffuse_transmission_color_texture(s.material), s).rgb;
+        (*m).diffuse_transmission *= s.texels.diffuse_transmission.a;
+        (*m).diffuse_transmission_color *= s.texels.diffuse_transmission_color.rgb;
     }
 }
 
@@ -152,8 +134,8 @@ fn add_clearcoat_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
     (*m).clearcoat = material_clearcoat(s.material);
     (*m).clearcoat_roughness = material_clearcoat_roughness(s.material);
     if (HAS_CLEARCOAT_TEXTURE) {
-        (*m).clearcoat *= sample_slot(material_clearcoat_texture(s.material), s).r;
-        (*m).clearcoat_roughness *= sample_slot(material_clearcoat_roughness_texture(s.material), s).g;
+        (*m).clearcoat *= s.texels.clearcoat.r;
+        (*m).clearcoat_roughness *= s.texels.clearcoat_roughness.g;
     }
     (*m).clearcoat_normal = to_local(s.shading, s.clearcoat_normal);
 }
@@ -162,8 +144,8 @@ fn add_sheen_parameters(m: ptr<function, BsdfParameters>, s: Surface) {
     (*m).sheen_color = material_sheen_color(s.material);
     (*m).sheen_roughness = material_sheen_roughness(s.material);
     if (HAS_SHEEN_TEXTURE) {
-        (*m).sheen_color *= sample_slot(material_sheen_color_texture(s.material), s).rgb;
-        (*m).sheen_roughness *= sample_slot(material_sheen_roughness_texture(s.material), s).a;
+        (*m).sheen_color *= s.texels.sheen_color.rgb;
+        (*m).sheen_roughness *= s.texels.sheen_roughness.a;
     }
 }
 
@@ -171,8 +153,8 @@ fn film_at(s: Surface) -> Film {
     var strength = material_iridescence(s.material);
     var thickness = material_iridescence_thickness_max(s.material);
     if (HAS_IRIDESCENCE_TEXTURE) {
-        strength *= sample_slot(material_iridescence_texture(s.material), s).r;
-        let texel = sample_slot(material_iridescence_thickness_texture(s.material), s);
+        strength *= s.texels.iridescence.r;
+        let texel = s.texels.iridescence_thickness;
         thickness = mix(material_iridescence_thickness_min(s.material), thickness, texel.g);
     }
     return Film(strength, material_iridescence_ior(s.material), 1.0e-9 * thickness);

@@ -6,7 +6,7 @@
 #include "math/float.wgsl"
 #include "vertex.wgsl"
 #include "accel.wgsl"
-#include "texture.wgsl"
+#include "texels.wgsl"
 
 struct Surface {
     position: vec3f,
@@ -18,8 +18,6 @@ struct Surface {
     shading: ShadingFrame,
     // Unit vector towards where the ray came from.
     wo: vec3f,
-    uv0: vec2f,
-    uv1: vec2f,
     // COLOR_0, or white.
     color: vec4f,
     // The triangle and its area.
@@ -33,6 +31,7 @@ struct Surface {
     clearcoat_normal: vec3f,
     // Stretch of highlights along the frame's x axis, if HAS_ANISOTROPY.
     anisotropy: f32,
+    texels: Texels,
 }
 
 // Rounding errors in units of 2^-24 between a point that is interpolated on a triangle and a ray
@@ -115,13 +114,10 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
         }
     }
     let uv = texture_coordinates(triangle.index, b);
-    (*s).uv0 = uv.xy;
-    (*s).uv1 = uv.zw;
+    (*s).texels = texels_at((*s).material, uv.xy, uv.zw);
     let smooth_normal = normal;
     if (HAS_NORMAL_TEXTURE) {
-        let slot = material_normal_texture((*s).material);
-        let scale = material_normal_scale((*s).material);
-        normal = perturb_normal(*s, slot, scale, normal, tangent);
+        normal = perturb_normal((*s).texels.normal, material_normal_scale((*s).material), normal, tangent);
     }
     let side = select(1.0, -1.0, (*s).back_face);
     (*s).normal *= side;
@@ -129,9 +125,8 @@ fn read_vertices(s: ptr<function, Surface>, triangle: Triangle, b: vec3f) {
     if (HAS_CLEARCOAT) {
         var coat = smooth_normal;
         if (HAS_CLEARCOAT_NORMAL_TEXTURE) {
-            let slot = material_clearcoat_normal_texture((*s).material);
             let scale = material_clearcoat_normal_scale((*s).material);
-            coat = perturb_normal(*s, slot, scale, coat, tangent);
+            coat = perturb_normal((*s).texels.clearcoat_normal, scale, coat, tangent);
         }
         (*s).clearcoat_normal = oriented(*s, coat, side);
     }
@@ -158,8 +153,8 @@ fn turn_frame(s: ptr<function, Surface>, normal: vec3f, tangent: vec4f) {
         return;
     }
     var direction = vec2f(material_anisotropy_cos(material), material_anisotropy_sin(material));
-    if (HAS_ANISOTROPY_TEXTURE && material_anisotropy_texture(material).texture != NONE) {
-        let texel = sample_texture(material_anisotropy_texture(material), (*s).uv0, (*s).uv1);
+    let texel = (*s).texels.anisotropy;
+    if (HAS_ANISOTROPY_TEXTURE && texel.w != NO_TEXEL) {
         let d = texel.rg * 2.0 - 1.0;
         direction = vec2f(direction.x * d.x - direction.y * d.y, direction.y * d.x + direction.x * d.y);
         strength *= texel.b;
@@ -188,11 +183,11 @@ fn reflecting_normal(geometric: vec3f, shading: vec3f, wo: vec3f) -> vec3f {
     return normalize_or(wo + lifted, geometric);
 }
 
-fn perturb_normal(s: Surface, slot: TextureSlot, scale: f32, normal: vec3f, tangent: vec4f) -> vec3f {
-    if (slot.texture == NONE || tangent.w == 0.0) {
+fn perturb_normal(texel: vec4f, scale: f32, normal: vec3f, tangent: vec4f) -> vec3f {
+    if (texel.w == NO_TEXEL || tangent.w == 0.0) {
         return normal;
     }
-    let map = (sample_texture(slot, s.uv0, s.uv1).xyz * 2.0 - 1.0) * vec3f(scale, scale, 1.0);
+    let map = (texel.xyz * 2.0 - 1.0) * vec3f(scale, scale, 1.0);
     // The interpolated tangent is used as it is, as mikktspace prescribes.
     let bitangent = cross(normal, tangent.xyz) * sign(tangent.w);
     return normalize_or(map.x * tangent.xyz + map.y * bitangent + map.z * normal, normal);

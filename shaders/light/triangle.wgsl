@@ -43,12 +43,10 @@ fn light_triangle_pdf(distance: f32, cos_light: f32, area: f32) -> f32 {
 }
 
 fn light_triangle_radiance(triangle: Triangle, b: vec3f, cos_light: f32) -> vec3f {
-    var uv0 = vec2f(0.0);
-    var uv1 = vec2f(0.0);
+    var texels = no_texels();
     if (HAS_EMISSIVE_TEXTURE || HAS_CLEARCOAT_TEXTURE) {
         let uv = texture_coordinates(triangle.index, b);
-        uv0 = uv.xy;
-        uv1 = uv.zw;
+        texels = emission_texels(triangle.material, uv.xy, uv.zw);
     }
-    return emissive_at(triangle.material, uv0, uv1, cos_light);
+    return emissive_at(triangle.material, texels, cos_light);
 }
