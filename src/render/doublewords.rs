@@ -38,7 +38,7 @@ fn doublewords(fields: &[&str]) -> usize {
 
 /// One of the words of the double words `q0`, `q1`, ...
 fn word(i: usize) -> String {
-    let shift = if i % 2 == 0 { "" } else { " >> 32u" };
+    let shift = ["", " >> 32u"][i % 2];
     format!("u32(q{}{shift})", i / 2)
 }
 
