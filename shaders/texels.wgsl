@@ -1,5 +1,5 @@
 // What a material's textures say at a point: all are looked up by one piece of code, which goes from slot to slot, since each
-// copy of it takes a tenth of a second to compile on a CPU.
+// copy of it takes long to compile (docs/kernel.md).
 
 #include "bindings.wgsl"
 #include "texture.wgsl"
