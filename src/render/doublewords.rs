@@ -2,23 +2,50 @@
 
 use super::paged::{LARGE_ARRAYS, by_page, declarations};
 
-/// What the entries of arrays that are read in double words consist of: in the order of `shaders/types.wgsl` the types of
-/// their fields.
-const ENTRIES: [(&str, &[&str]); 5] = [
-    ("Element", &["vec4u", "vec4u", "vec4u", "vec4u"]),
-    ("vec2f", &["f32", "f32"]),
-    ("vec4f", &["f32", "f32", "f32", "f32"]),
-    ("LightNode", &["vec3f", "u32", "u32", "u32", "f32", "u32"]),
+/// Name and type of a field; of a vector there is one without a name.
+type Field = (&'static str, &'static str);
+
+/// What the entries of arrays that are read in double words consist of, as in `shaders/types.wgsl`.
+const ENTRIES: [(&str, &[Field]); 5] = [
+    (
+        "Element",
+        &[
+            ("a", "vec4u"),
+            ("b", "vec4u"),
+            ("c", "vec4u"),
+            ("d", "vec4u"),
+        ],
+    ),
+    ("vec2f", &[("", "vec2f")]),
+    ("vec4f", &[("", "vec4f")]),
+    (
+        "LightNode",
+        &[
+            ("center", "vec3f"),
+            ("extent", "u32"),
+            ("axis", "u32"),
+            ("cones", "u32"),
+            ("intensity", "f32"),
+            ("link", "u32"),
+        ],
+    ),
     (
         "FilmPixel",
         &[
-            "vec3f", "u32", "vec3f", "u32", "vec3f", "u32", "vec3f", "u32",
+            ("sum", "vec3f"),
+            ("count", "u32"),
+            ("sum_low", "vec3f"),
+            ("non_finite", "u32"),
+            ("square", "vec3f"),
+            ("closest_rays", "u32"),
+            ("square_low", "vec3f"),
+            ("any_rays", "u32"),
         ],
     ),
 ];
 
-/// The types of an entry's fields, if it is read in double words.
-pub(super) fn entry_fields(entry: &str) -> Option<&'static [&'static str]> {
+/// The fields of an entry, if it is read in double words.
+pub(super) fn entry_fields(entry: &str) -> Option<&'static [Field]> {
     let (_, fields) = ENTRIES.iter().find(|(name, _)| *name == entry)?;
     Some(fields)
 }
@@ -32,8 +59,8 @@ fn length(kind: &str) -> usize {
 }
 
 /// Double words of an entry with such fields.
-fn doublewords(fields: &[&str]) -> usize {
-    fields.iter().map(|kind| length(kind)).sum::<usize>() / 2
+fn doublewords(fields: &[Field]) -> usize {
+    fields.iter().map(|(_, kind)| length(kind)).sum::<usize>() / 2
 }
 
 /// One of the words of the double words `q0`, `q1`, ...
@@ -42,28 +69,47 @@ fn word(i: usize) -> String {
     format!("u32(q{}{shift})", i / 2)
 }
 
-/// The entry that the double words `q0`, `q1`, ... are.
-fn entry_of(entry: &str, fields: &[&str]) -> String {
+/// Statements that return the entry that the double words `q0`, `q1`, ... are. Field by field: what a user's struct has more
+/// is for the comparison with the host's to refuse.
+fn return_entry(entry: &str, fields: &[Field]) -> String {
+    let mut text = format!("    var entry: {entry};\n");
     let mut next = 0;
-    let mut field = |kind: &&str| {
-        let words: Vec<_> = (next..next + length(kind)).map(word).collect();
-        next += words.len();
+    for (name, kind) in fields {
+        let count = length(kind);
+        let words: Vec<_> = (next..next + count).map(word).collect();
         let words = words.join(", ");
-        match *kind {
-            "u32" => words,
-            "f32" => format!("bitcast<f32>({words})"),
-            "vec3f" => format!("bitcast<vec3f>(vec3u({words}))"),
+        let value = match (*kind, count) {
+            ("u32", _) => words,
+            ("f32", _) => format!("bitcast<f32>({words})"),
+            (_, _) if kind.ends_with('f') => format!("bitcast<{kind}>(vec{count}u({words}))"),
             _ => format!("{kind}({words})"),
+        };
+        let dot = if name.is_empty() { "" } else { "." };
+        text += &format!("    entry{dot}{name} = {value};\n");
+        next += count;
+    }
+    text + "    return entry;\n"
+}
+
+/// The words of an entry called `value`.
+fn words_of(value: &str, fields: &[Field]) -> Vec<String> {
+    let words = |(name, kind): &Field| -> Vec<String> {
+        let field = format!("{value}.{name}");
+        match *kind {
+            "u32" => vec![field],
+            _ => "xyzw"[..length(kind)]
+                .chars()
+                .map(|component| format!("bitcast<u32>({field}.{component})"))
+                .collect(),
         }
     };
-    let fields: Vec<_> = fields.iter().map(&mut field).collect();
-    format!("{entry}(\n        {},\n    )", fields.join(",\n        "))
+    fields.iter().flat_map(words).collect()
 }
 
 /// Bindings and accessor of an array with entries of such fields, in `pages` pages of 2^`page_bits`.
 pub(super) fn array_wgsl(
     array: usize,
-    fields: &[&str],
+    fields: &[Field],
     pages: usize,
     page_bits: u32,
     first_binding: u32,
@@ -75,10 +121,9 @@ pub(super) fn array_wgsl(
         let reads: String = (1..count)
             .map(|i| format!("    let q{i} = {name}_{page}[first + {i}u];\n"))
             .collect();
-        let value = entry_of(entry, fields);
-        text += &format!(
-            "fn {accessor}_{page}(first: u32, q0: u64) -> {entry} {{\n{reads}    return {value};\n}}\n"
-        );
+        let value = return_entry(entry, fields);
+        text +=
+            &format!("fn {accessor}_{page}(first: u32, q0: u64) -> {entry} {{\n{reads}{value}}}\n");
     }
     let start = by_page(pages, page_bits, &|page| {
         format!("{name}_{page}[{count}u * offset]")
@@ -101,22 +146,16 @@ pub(super) fn film_wgsl(declaration: impl Fn(&str) -> String) -> String {
     let reads: String = (0..count)
         .map(|i| format!("    let q{i} = film[{count}u * index + {i}u];\n"))
         .collect();
-    let vectors = ["sum", "sum_low", "square", "square_low"];
-    let scalars = ["count", "non_finite", "closest_rays", "any_rays"];
-    let write = |i: usize| {
-        let (vector, scalar) = (vectors[i / 2], scalars[i / 2]);
-        let float = |component| format!("bitcast<u32>(pixel.{vector}.{component})");
-        let [low, high] = match i % 2 {
-            0 => [float("x"), float("y")],
-            _ => [float("z"), format!("pixel.{scalar}")],
-        };
+    let write = |(i, words): (usize, &[String])| {
+        let (low, high) = (&words[0], &words[1]);
         format!("    film[{count}u * index + {i}u] = u64({low}) | (u64({high}) << 32u);\n")
     };
-    let writes: String = (0..count).map(write).collect();
-    let value = entry_of(entry, fields);
+    let words = words_of("pixel", fields);
+    let writes: String = words.chunks_exact(2).enumerate().map(write).collect();
+    let value = return_entry(entry, fields);
     declaration("u64")
         + &format!(
-            "fn load_pixel(index: u32) -> FilmPixel {{\n{reads}    return {value};\n}}\n\
+            "fn load_pixel(index: u32) -> FilmPixel {{\n{reads}{value}}}\n\
              fn store_pixel(index: u32, pixel: FilmPixel) {{\n{writes}}}\n"
         )
 }
