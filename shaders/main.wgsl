@@ -64,6 +64,10 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
                 index = film_index(position);
                 pixel = load_pixel(index);
                 count_before = pixel.count;
+                // Of a pass that was stopped, or cut by a driver's limit, it has its samples already.
+                if (pixel.count >= dispatch.target_count) {
+                    continue;
+                }
             }
             if (no_room_for_sample()) {
                 break;

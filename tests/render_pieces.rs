@@ -70,25 +70,34 @@ fn the_picture_does_not_depend_on_the_pixels_of_a_lane() {
     let device = Device::open(None).expect("a Vulkan device");
     let gpu_scene = GpuScene::upload(&device, &prepared).expect("memory");
     let library = ShaderLibrary::embedded();
-    let render = |piece_tiles| {
+    let render = |piece_tiles, pass_samples, stops| {
         let settings = Settings {
             width: 93,
             height: 75,
             spp: 5,
             piece_tiles: Some(piece_tiles),
-            pass_samples: Some(3),
+            pass_samples: Some(pass_samples),
             ..Settings::default()
         };
         let renderer = Renderer::new(&device, &library, &scene, &prepared, &gpu_scene, &settings);
         let mut renderer = renderer.expect("a kernel");
+        if stops {
+            let flow = renderer.render(&mut |_, _| ControlFlow::Break(()));
+            assert!(flow.expect("a first piece").is_break());
+        }
         let flow = renderer.render(&mut |_, _| ControlFlow::Continue(()));
         assert!(flow.expect("a render").is_continue());
         renderer.film().expect("a film")
     };
     // 120 tiles: up to eight pixels a lane in one piece, one in pieces of 16.
-    let whole = render(120);
+    let whole = render(120, 3, false);
     assert_eq!(whole.spp_range(), (5, 5));
     for tiles in [16, 119] {
-        assert_eq!(bits(&render(tiles)), bits(&whole), "{tiles} tiles a piece");
+        let film = render(tiles, 3, false);
+        assert_eq!(bits(&film), bits(&whole), "{tiles} tiles a piece");
+        // Taken up again, the last pass meets pixels that have their samples already.
+        let resumed = render(tiles, 5, true);
+        assert_eq!(resumed.spp_range(), (5, 5), "{tiles} tiles a piece");
+        assert_eq!(bits(&resumed), bits(&whole), "{tiles} tiles a piece");
     }
 }
