@@ -101,3 +101,37 @@ fn the_picture_does_not_depend_on_the_pixels_of_a_lane() {
         assert_eq!(bits(&resumed), bits(&whole), "{tiles} tiles a piece");
     }
 }
+
+/// Arrays and film are read in double words where a device is faster so.
+#[test]
+fn the_picture_does_not_depend_on_the_width_of_reads() {
+    let device = Device::open(None).expect("a Vulkan device");
+    if !device.info().int64 {
+        return;
+    }
+    let library = ShaderLibrary::embedded();
+    // A tree, textures and many lamps; a list.
+    for name in ["many_lights", "foliage", "cornell_box"] {
+        let path = format!("scenes/{name}.gltf");
+        let scene = gltf::load(path.as_ref(), &Default::default()).expect("a scene");
+        let prepared = Prepared::new(&scene, 0, &BuildOptions::default()).expect("a flat scene");
+        let gpu_scene = GpuScene::upload(&device, &prepared).expect("memory");
+        let render = |doublewords| {
+            let settings = Settings {
+                width: 45,
+                height: 27,
+                spp: 3,
+                stats: true,
+                doublewords,
+                ..Settings::default()
+            };
+            let renderer =
+                Renderer::new(&device, &library, &scene, &prepared, &gpu_scene, &settings);
+            let mut renderer = renderer.expect("a kernel");
+            let flow = renderer.render(&mut |_, _| ControlFlow::Continue(()));
+            assert!(flow.expect("a render").is_continue());
+            renderer.film().expect("a film")
+        };
+        assert_eq!(bits(&render(true)), bits(&render(false)), "{name}");
+    }
+}

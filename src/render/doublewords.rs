@@ -1,66 +1,75 @@
 //! Access to arrays in 64-bit integers, where a device is faster so: half as many gathers, which also compile in half the time.
 
 use super::paged::{LARGE_ARRAYS, by_page, declarations};
+use super::wgsl_structs::{fields_of, numbers_in};
 
-/// Name and type of a field; of a vector there is one without a name.
-type Field = (&'static str, &'static str);
+/// A field of an entry, or a whole entry that is a vector: its name, empty for the latter, and its type.
+type Field<'a> = (&'a str, &'a str);
 
-/// What the entries of arrays that are read in double words consist of, as in `shaders/types.wgsl`.
-const ENTRIES: [(&str, &[Field]); 5] = [
-    (
-        "Element",
-        &[
-            ("a", "vec4u"),
-            ("b", "vec4u"),
-            ("c", "vec4u"),
-            ("d", "vec4u"),
-        ],
-    ),
-    ("vec2f", &[("", "vec2f")]),
-    ("vec4f", &[("", "vec4f")]),
-    (
-        "LightNode",
-        &[
-            ("center", "vec3f"),
-            ("extent", "u32"),
-            ("axis", "u32"),
-            ("cones", "u32"),
-            ("intensity", "f32"),
-            ("link", "u32"),
-        ],
-    ),
-    (
-        "FilmPixel",
-        &[
-            ("sum", "vec3f"),
-            ("count", "u32"),
-            ("sum_low", "vec3f"),
-            ("non_finite", "u32"),
-            ("square", "vec3f"),
-            ("closest_rays", "u32"),
-            ("square_low", "vec3f"),
-            ("any_rays", "u32"),
-        ],
-    ),
-];
-
-/// The fields of an entry, if it is read in double words.
-pub(super) fn entry_fields(entry: &str) -> Option<&'static [Field]> {
-    let (_, fields) = ENTRIES.iter().find(|(name, _)| *name == entry)?;
-    Some(fields)
+/// An array's entry that is read in double words.
+pub(super) struct Entry<'a> {
+    kind: &'a str,
+    fields: Vec<Field<'a>>,
+    /// Double words that it consists of.
+    count: usize,
 }
 
-/// Numbers in a value of a type.
-fn length(kind: &str) -> usize {
-    match kind.strip_prefix("vec") {
-        Some(rest) => usize::from(rest.as_bytes()[0] - b'0'),
-        None => 1,
+impl<'a> Entry<'a> {
+    /// An entry of a type, whose struct is in the text `types`; none if it has no even number of words, or fields that
+    /// are not made of words.
+    pub fn new(types: &'a str, kind: &'a str) -> Option<Self> {
+        let fields = match numbers_in(kind) {
+            Some(_) => vec![("", kind)],
+            None => fields_of(types, kind),
+        };
+        let numbers: Option<usize> = fields.iter().map(|(_, kind)| numbers_in(kind)).sum();
+        let words = numbers.filter(|words| *words > 0 && words.is_multiple_of(2))?;
+        Some(Self {
+            kind,
+            fields,
+            count: words / 2,
+        })
     }
-}
 
-/// Double words of an entry with such fields.
-fn doublewords(fields: &[Field]) -> usize {
-    fields.iter().map(|(_, kind)| length(kind)).sum::<usize>() / 2
+    /// Statements that read the double words `q{first}`, ... of an entry; `address` gives where each is.
+    fn reads(&self, first: usize, address: impl Fn(usize) -> String) -> String {
+        let read = |i| format!("    let q{i} = {};\n", address(i));
+        (first..self.count).map(read).collect()
+    }
+
+    /// Statements that return the entry that the double words `q0`, `q1`, ... are. Field by field: what a user's struct has
+    /// more is for the comparison with the host's to refuse.
+    fn assembly(&self) -> String {
+        let mut text = format!("    var entry: {};\n", self.kind);
+        let mut words = (0..).map(word);
+        for (name, kind) in &self.fields {
+            let count = numbers_in(kind).unwrap_or_default();
+            let words: Vec<_> = words.by_ref().take(count).collect();
+            let words = words.join(", ");
+            let value = match count {
+                1 => format!("bitcast<{kind}>({words})"),
+                _ => format!("bitcast<{kind}>(vec{count}u({words}))"),
+            };
+            let dot = if name.is_empty() { "" } else { "." };
+            text += &format!("    entry{dot}{name} = {value};\n");
+        }
+        text + "    return entry;\n"
+    }
+
+    /// The words of an entry called `value`, which is a struct.
+    fn words_of(&self, value: &str) -> Vec<String> {
+        let words = |(name, kind): &Field<'_>| -> Vec<String> {
+            let bits = |part: String| format!("bitcast<u32>({part})");
+            match numbers_in(kind).unwrap_or_default() {
+                1 => vec![bits(format!("{value}.{name}"))],
+                count => "xyzw"[..count]
+                    .chars()
+                    .map(|component| bits(format!("{value}.{name}.{component}")))
+                    .collect(),
+            }
+        };
+        self.fields.iter().flat_map(words).collect()
+    }
 }
 
 /// One of the words of the double words `q0`, `q1`, ...
@@ -69,62 +78,23 @@ fn word(i: usize) -> String {
     format!("u32(q{}{shift})", i / 2)
 }
 
-/// Statements that return the entry that the double words `q0`, `q1`, ... are. Field by field: what a user's struct has more
-/// is for the comparison with the host's to refuse.
-fn return_entry(entry: &str, fields: &[Field]) -> String {
-    let mut text = format!("    var entry: {entry};\n");
-    let mut next = 0;
-    for (name, kind) in fields {
-        let count = length(kind);
-        let words: Vec<_> = (next..next + count).map(word).collect();
-        let words = words.join(", ");
-        let value = match (*kind, count) {
-            ("u32", _) => words,
-            ("f32", _) => format!("bitcast<f32>({words})"),
-            (_, _) if kind.ends_with('f') => format!("bitcast<{kind}>(vec{count}u({words}))"),
-            _ => format!("{kind}({words})"),
-        };
-        let dot = if name.is_empty() { "" } else { "." };
-        text += &format!("    entry{dot}{name} = {value};\n");
-        next += count;
-    }
-    text + "    return entry;\n"
-}
-
-/// The words of an entry called `value`.
-fn words_of(value: &str, fields: &[Field]) -> Vec<String> {
-    let words = |(name, kind): &Field| -> Vec<String> {
-        let field = format!("{value}.{name}");
-        match *kind {
-            "u32" => vec![field],
-            _ => "xyzw"[..length(kind)]
-                .chars()
-                .map(|component| format!("bitcast<u32>({field}.{component})"))
-                .collect(),
-        }
-    };
-    fields.iter().flat_map(words).collect()
-}
-
-/// Bindings and accessor of an array with entries of such fields, in `pages` pages of 2^`page_bits`.
+/// Bindings and accessor of one of the large arrays, in `pages` pages of 2^`page_bits`.
 pub(super) fn array_wgsl(
     array: usize,
-    fields: &[Field],
+    entry: &Entry<'_>,
     pages: usize,
     page_bits: u32,
     first_binding: u32,
 ) -> String {
-    let (name, entry, accessor) = LARGE_ARRAYS[array];
-    let count = doublewords(fields);
+    let (name, kind, accessor) = LARGE_ARRAYS[array];
     let mut text = declarations(name, "u64", pages, first_binding);
     for page in 0..pages {
-        let reads: String = (1..count)
-            .map(|i| format!("    let q{i} = {name}_{page}[first + {i}u];\n"))
-            .collect();
-        let value = return_entry(entry, fields);
+        let reads = entry.reads(1, |i| format!("{name}_{page}[first + {i}u]"));
+        let value = entry.assembly();
         text +=
-            &format!("fn {accessor}_{page}(first: u32, q0: u64) -> {entry} {{\n{reads}{value}}}\n");
+            &format!("fn {accessor}_{page}(first: u32, q0: u64) -> {kind} {{\n{reads}{value}}}\n");
     }
+    let count = entry.count;
     let start = by_page(pages, page_bits, &|page| {
         format!("{name}_{page}[{count}u * offset]")
     });
@@ -133,29 +103,26 @@ pub(super) fn array_wgsl(
     });
     text + &format!(
         "fn {accessor}_start(index: u32) -> u64 {{\n{start}}}\n\
-         fn {accessor}_from(index: u32, start: u64) -> {entry} {{\n{rest}}}\n\
-         fn {accessor}(index: u32) -> {entry} {{\n    \
+         fn {accessor}_from(index: u32, start: u64) -> {kind} {{\n{rest}}}\n\
+         fn {accessor}(index: u32) -> {kind} {{\n    \
          return {accessor}_from(index, {accessor}_start(index));\n}}\n"
     )
 }
 
-/// The film's binding and accessors, as [`film_wgsl`](super::paged::film_wgsl) has them.
-pub(super) fn film_wgsl(declaration: impl Fn(&str) -> String) -> String {
-    let (entry, fields) = ENTRIES[4];
-    let count = doublewords(fields);
-    let reads: String = (0..count)
-        .map(|i| format!("    let q{i} = film[{count}u * index + {i}u];\n"))
-        .collect();
+/// The film's accessors, as [`film_wgsl`](super::paged::film_wgsl) has them.
+pub(super) fn film_accessors(pixel: &Entry<'_>) -> String {
+    let count = pixel.count;
+    let address = |i| format!("film[{count}u * index + {i}u]");
     let write = |(i, words): (usize, &[String])| {
         let (low, high) = (&words[0], &words[1]);
-        format!("    film[{count}u * index + {i}u] = u64({low}) | (u64({high}) << 32u);\n")
+        let address = address(i);
+        format!("    {address} = u64({low}) | (u64({high}) << 32u);\n")
     };
-    let words = words_of("pixel", fields);
+    let words = pixel.words_of("pixel");
     let writes: String = words.chunks_exact(2).enumerate().map(write).collect();
-    let value = return_entry(entry, fields);
-    declaration("u64")
-        + &format!(
-            "fn load_pixel(index: u32) -> FilmPixel {{\n{reads}{value}}}\n\
-             fn store_pixel(index: u32, pixel: FilmPixel) {{\n{writes}}}\n"
-        )
+    let (reads, value) = (pixel.reads(0, address), pixel.assembly());
+    format!(
+        "fn load_pixel(index: u32) -> FilmPixel {{\n{reads}{value}}}\n\
+         fn store_pixel(index: u32, pixel: FilmPixel) {{\n{writes}}}\n"
+    )
 }

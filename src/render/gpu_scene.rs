@@ -51,15 +51,15 @@ impl GpuScene {
             .collect()
     }
 
-    /// The generated `buffers.wgsl`; with `doublewords` it reads what has an even number of words in
-    /// 64-bit integers, which the device must have.
-    pub fn buffers_wgsl(&self, doublewords: bool) -> String {
+    /// The generated `buffers.wgsl`; where the text with the shader's structs, `types`, is given, it reads what has an even
+    /// number of words in 64-bit integers, which the device must have.
+    pub fn buffers_wgsl(&self, types: Option<&str>) -> String {
         let mut binding = FIRST_PAGED_BINDING;
         let mut text = String::from(
             "// Generated: the film, and large arrays, split over pages where the device asks for it.\n",
-        ) + &film_wgsl(doublewords);
+        ) + &film_wgsl(types);
         for buffer in &self.paged {
-            text += &buffer.wgsl(binding, doublewords);
+            text += &buffer.wgsl(binding, types);
             binding += buffer.pages().len() as u32;
         }
         text

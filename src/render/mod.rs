@@ -42,6 +42,7 @@ mod stage;
 mod stretched;
 mod textures;
 mod vertex_format;
+mod wgsl_structs;
 
 pub use albedo::BsdfTables;
 pub use alias::{AliasEntry, alias_table};

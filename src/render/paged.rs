@@ -2,7 +2,7 @@
 
 use bytemuck::Pod;
 
-use super::doublewords::{self, entry_fields};
+use super::doublewords::{Entry, array_wgsl, film_accessors};
 use crate::gpu::{Buffer, Device, GpuError};
 
 /// First binding of the large arrays; those below are in `shaders/bindings.wgsl`.
@@ -27,20 +27,23 @@ pub fn large_arrays_wgsl(pages: usize) -> String {
         paged_wgsl(name, element, accessor, pages, 20, binding)
     };
     let arrays: String = LARGE_ARRAYS.into_iter().enumerate().map(paged).collect();
-    arrays + &film_wgsl(false)
+    arrays + &film_wgsl(None)
 }
 
-/// The film's binding and accessors: `load_pixel(index)` and `store_pixel(index, pixel)`.
-pub fn film_wgsl(in_doublewords: bool) -> String {
-    let declaration = |kind: &str| {
-        format!("@group(0) @binding(2) var<storage, read_write> film: array<{kind}>;\n")
+/// The film's binding and accessors: `load_pixel(index)` and `store_pixel(index, pixel)`. In double words where the text
+/// with the shader's structs is given.
+pub fn film_wgsl(types: Option<&str>) -> String {
+    let pixel = types.and_then(|types| Entry::new(types, "FilmPixel"));
+    let (kind, accessors) = match pixel {
+        Some(pixel) => ("u64", film_accessors(&pixel)),
+        None => (
+            "FilmPixel",
+            "fn load_pixel(index: u32) -> FilmPixel {\n    return film[index];\n}\n\
+             fn store_pixel(index: u32, pixel: FilmPixel) {\n    film[index] = pixel;\n}\n"
+                .to_owned(),
+        ),
     };
-    if in_doublewords {
-        return doublewords::film_wgsl(declaration);
-    }
-    declaration("FilmPixel")
-        + "fn load_pixel(index: u32) -> FilmPixel {\n    return film[index];\n}\n\
-           fn store_pixel(index: u32, pixel: FilmPixel) {\n    film[index] = pixel;\n}\n"
+    format!("@group(0) @binding(2) var<storage, read_write> film: array<{kind}>;\n{accessors}")
 }
 
 /// An array that shaders read through `accessor(index)`.
@@ -88,34 +91,20 @@ impl PagedBuffer {
         self.bytes
     }
 
-    /// The text that declares the pages from `first_binding` on, and the accessor. What has an even number of words may be
-    /// read in double words.
-    pub fn wgsl(&self, first_binding: u32, in_doublewords: bool) -> String {
-        let (name, element, accessor) = LARGE_ARRAYS[self.array];
-        let pages = self.pages.len();
-        if let Some(fields) = entry_fields(element).filter(|_| in_doublewords) {
-            let alias = if self.array == 0 {
-                "alias ElementStart = u64;\n"
-            } else {
-                ""
-            };
-            return alias.to_owned()
-                + &doublewords::array_wgsl(
-                    self.array,
-                    fields,
-                    pages,
-                    self.page_bits,
-                    first_binding,
-                );
-        }
-        paged_wgsl(
-            name,
-            element,
-            accessor,
-            pages,
-            self.page_bits,
-            first_binding,
-        )
+    /// The text that declares the pages from `first_binding` on, and the accessor. Where the text with the shader's structs
+    /// is given, what has an even number of words is read in double words.
+    pub fn wgsl(&self, first_binding: u32, types: Option<&str>) -> String {
+        let (name, kind, accessor) = LARGE_ARRAYS[self.array];
+        let (pages, bits) = (self.pages.len(), self.page_bits);
+        let Some(entry) = types.and_then(|types| Entry::new(types, kind)) else {
+            return paged_wgsl(name, kind, accessor, pages, bits, first_binding);
+        };
+        let start = if self.array == 0 {
+            "alias ElementStart = u64;\n"
+        } else {
+            ""
+        };
+        start.to_owned() + &array_wgsl(self.array, &entry, pages, bits, first_binding)
     }
 }
 

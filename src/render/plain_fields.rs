@@ -3,14 +3,15 @@
 //! not compiled.
 
 use super::layout::{Material, NONE, layouts};
-use super::short_tables::fields_of;
+use super::wgsl_structs::fields_of;
 use crate::shader::StructLayout;
 
 /// The materials of a scene, where their fields are plain.
 pub(super) struct PlainFields<'a> {
     /// The text with the shader's structs.
     types: &'a str,
-    layout: Option<StructLayout>,
+    /// The host's structs.
+    layouts: Vec<StructLayout>,
     /// What no instance shows is all zeros, and not among them.
     used: Vec<&'a Material>,
 }
@@ -21,7 +22,7 @@ impl<'a> PlainFields<'a> {
         let is_used = |m: &&Material| **m != Material::default();
         Self {
             types,
-            layout: layout_of("Material"),
+            layouts: layouts(),
             used: materials.iter().filter(is_used).collect(),
         }
     }
@@ -29,14 +30,14 @@ impl<'a> PlainFields<'a> {
     /// The value of a field, of a type, for which `read` stands where it is not plain: a literal, `read` itself, or the
     /// struct of both. None if nothing of it is plain.
     pub fn value(&self, field: &str, kind: &str, read: &str) -> Option<String> {
-        let layout = self.layout.as_ref()?;
+        let layout = self.layout_of("Material")?;
         let field = layout.fields.iter().find(|f| f.name == field)?;
         self.value_at(field.offset, field.size, kind, read)
     }
 
     fn value_at(&self, offset: usize, size: usize, kind: &str, read: &str) -> Option<String> {
-        match layout_of(kind) {
-            Some(layout) => self.structure(offset, &layout, read),
+        match self.layout_of(kind) {
+            Some(layout) => self.structure(offset, layout, read),
             None => literal(kind, self.shared_words(offset, size)?),
         }
     }
@@ -47,6 +48,10 @@ impl<'a> PlainFields<'a> {
         let (first, others) = self.used.split_first()?;
         let same = others.iter().all(|m| words(m) == words(first));
         same.then(|| bytemuck::cast_slice(words(first)))
+    }
+
+    fn layout_of(&self, name: &str) -> Option<&StructLayout> {
+        self.layouts.iter().find(|layout| layout.name == name)
     }
 
     fn structure(&self, offset: usize, layout: &StructLayout, read: &str) -> Option<String> {
@@ -61,10 +66,6 @@ impl<'a> PlainFields<'a> {
         }
         plain.then(|| format!("{}({})", layout.name, values.join(", ")))
     }
-}
-
-fn layout_of(name: &str) -> Option<StructLayout> {
-    layouts().into_iter().find(|layout| layout.name == name)
 }
 
 /// A value of a type, if it is plain.

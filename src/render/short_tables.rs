@@ -7,6 +7,7 @@ use std::fmt::Write;
 use super::layout::{LIGHT_KIND_SHIFT, LIGHT_TRIANGLE, Material};
 use super::plain_fields::PlainFields;
 use super::prepared::Prepared;
+use super::wgsl_structs::fields_of;
 use crate::shader::{ShaderError, ShaderLibrary, VirtualFiles};
 
 /// Entries of a short table.
@@ -97,20 +98,6 @@ fn parts_of(types: &str, kind: &str) -> Vec<String> {
         [] => vec![String::new()],
         fields => fields.iter().map(|(name, _)| format!(".{name}")).collect(),
     }
-}
-
-/// Names and types of the fields of a struct in a text; none if it has no such struct.
-pub(super) fn fields_of<'a>(text: &'a str, name: &str) -> Vec<(&'a str, &'a str)> {
-    let mut lines = text.lines();
-    if !lines.any(|line| line.trim() == format!("struct {name} {{")) {
-        return Vec::new();
-    }
-    let inside = lines.take_while(|line| line.trim() != "}");
-    let field = |line: &'a str| {
-        let (name, kind) = line.split("//").next()?.split_once(':')?;
-        Some((name.trim(), kind.trim().trim_end_matches(',')))
-    };
-    inside.filter_map(field).collect()
 }
 
 /// Of each pair with lights the first entry that is one of its triangles; none if these are not few.
