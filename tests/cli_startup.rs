@@ -164,3 +164,31 @@ fn a_cache_that_is_off_or_impossible_changes_nothing() {
     }
     assert_eq!(result(&run(nowhere)), with);
 }
+
+#[test]
+fn a_kernel_that_is_compiled_quickly_draws_the_same_picture() {
+    let folder = folder();
+    let devices = finish(command(&["devices", "--json"]).spawn().expect("a start"));
+    let device = devices.ends_with(0).json()[0].clone();
+    let can = device["can_compile_quickly"].as_bool().expect("a field");
+    let draw = |optimization| {
+        let output = folder.path().join(format!("{optimization}.exr"));
+        let mut command = render(folder.path());
+        command.args(["--optimization", optimization, "--device", "0", "-o"]);
+        // What whoever runs the tests asks of the driver is not asked for here.
+        command.arg(&output).env_remove("GALLIVM_PERF");
+        let run = run(command);
+        let film = etendue::image::exr::read(&output).expect("a readable EXR");
+        (film.0, run.json())
+    };
+    let (full, report) = draw("full");
+    assert_eq!(report["optimization"], "full");
+    for optimization in ["auto", "quick"] {
+        let (picture, report) = draw(optimization);
+        assert_eq!(report["optimization"], if can { "quick" } else { "full" });
+        let warnings = report["warnings"].as_array().expect("a list");
+        let is_missed = optimization == "quick" && !can;
+        assert_eq!(warnings.len(), usize::from(is_missed), "{warnings:?}");
+        assert_eq!(picture, full, "{optimization}");
+    }
+}

@@ -7,6 +7,7 @@ use clap::Args;
 use super::camera::CameraArgs;
 use super::environment::EnvironmentArg;
 use super::load::LoadArgs;
+use super::optimization::Optimization;
 use super::parse;
 use crate::accel::{Instancing, Preset};
 use crate::image::ToneMap;
@@ -72,6 +73,11 @@ pub struct RenderArgs {
     /// off. But for off that pass also says where paths end, and how many light samples their first vertices draw
     #[arg(long, value_name = "NAME", default_value_t)]
     pub guiding: Guiding,
+
+    /// How much the driver optimizes the kernel, where it has a choice (lavapipe of Mesa 25 or newer): auto (little for
+    /// pictures of few paths, which then are done sooner), quick, full. The picture is the same
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub optimization: Optimization,
 
     /// Whether instances of a mesh share its geometry: auto (where that saves much memory; rays then
     /// take longer), never, always

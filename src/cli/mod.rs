@@ -17,6 +17,8 @@ mod lights_report;
 mod load;
 mod message;
 mod metadata;
+mod opening;
+mod optimization;
 mod outputs;
 mod parse;
 mod progress;

@@ -1,8 +1,5 @@
 //! `etendue render`: the way of a picture through the program.
 
-use std::panic::resume_unwind;
-use std::time::Instant;
-
 use anyhow::{Context, Result};
 
 use super::aov::{self, Layers};
@@ -14,19 +11,21 @@ use super::interrupt::Interrupt;
 use super::lights_report::LightsReport;
 use super::message::{self, Warnings};
 use super::metadata::metadata;
+use super::opening::load_and_open;
+use super::optimization::Optimization;
 use super::outputs::Outputs;
 use super::progress::ProgressLine;
 use super::report::{Report, Seconds, timed};
-use super::{camera, environment, parse, settings, shaders};
+use super::{camera, settings, shaders};
 use crate::accel::BuildOptions;
-use crate::gpu::Device;
+use crate::gpu::DeviceInfo;
 use crate::host::Cache;
-use crate::host::stages::stage;
+use crate::host::stages::{seconds_since_start, stage};
 use crate::image::{Channel, Layer, Metadata, Picture};
 use crate::render::{
     Film, GpuScene, Guidance, Guiding, Prepared, Renderer, Settings, Stage, Training, train,
 };
-use crate::scene::{Features, Scene, gltf};
+use crate::scene::{Features, Scene};
 
 /// Integrators that show something in a scene without light.
 const NEED_NO_LIGHT: [&str; 4] = ["albedo", "ao", "depth", "normals"];
@@ -36,7 +35,6 @@ const NEED_NO_LIGHT: [&str; 4] = ["albedo", "ao", "depth", "normals"];
 /// # Errors
 /// Bad input, or a device that fails.
 pub fn run(args: &RenderArgs) -> Result<Exit> {
-    let start = Instant::now();
     let mut time = Seconds::default();
     let mut warnings = Warnings::new(args.quiet);
     let interrupt = Interrupt::install(args.quiet);
@@ -58,6 +56,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     })?;
     camera::focus(args, &mut scene, &prepared, &settings)?;
     warn_of_scene(&scene, &prepared, args, &mut warnings);
+    warn_of_optimization(args, device.info(), &mut warnings);
     let upload = || stage("upload", || GpuScene::upload(&device, &prepared));
     let gpu_scene = timed(&mut time.upload, upload)?;
     let stage = Stage {
@@ -109,7 +108,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     report.warnings = warnings.list().to_vec();
     let metadata = metadata(args, &settings, &renderer, &report);
     let picture = picture(args, &film, &layers.films);
-    let errors = write(&outputs, &picture, &metadata, &mut report, start);
+    let errors = write(&outputs, &picture, &metadata, &mut report);
     Ok(verdict(&report, layers.failure.into_iter().chain(errors)))
 }
 
@@ -148,66 +147,14 @@ fn write(
     picture: &Picture,
     metadata: &Metadata,
     report: &mut Report,
-    start: Instant,
 ) -> Vec<anyhow::Error> {
     let mut written = timed(&mut report.seconds.write, || {
         outputs.write(picture, metadata)
     });
     report.outputs = written.paths;
-    report.seconds.total = start.elapsed().as_secs_f64();
+    report.seconds.total = seconds_since_start();
     written.errors.extend(outputs.write_report(report).err());
     written.errors
-}
-
-/// Reads the scene while the device is opened. If both fail, it is the scene's error that counts.
-fn load_and_open(
-    args: &RenderArgs,
-    time: &mut Seconds,
-    warnings: &mut Warnings,
-) -> Result<((Scene, Settings), Device)> {
-    std::thread::scope(|scope| {
-        let device = &mut time.device;
-        let opening = scope.spawn(|| timed(device, || open_device(args)));
-        let scene = timed(&mut time.load, || load(args, warnings));
-        let scene = scene.and_then(|scene| Ok((settings::of(args, &scene)?, scene)));
-        let scene = scene.map(|(settings, scene)| (scene, settings));
-        let device = opening.join().unwrap_or_else(|panic| resume_unwind(panic));
-        Ok((scene?, device?))
-    })
-}
-
-fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
-    // The environment first: it is read faster, so a mistake in it is found sooner.
-    let environment = stage("environment", || environment::load(args, warnings))?;
-    let mut scene = gltf::load(&args.file, &args.load.options())?;
-    if environment.is_some() {
-        scene.environment = environment;
-    }
-    scene.required_features = required_features(args);
-    camera::apply(args, &mut scene)?;
-    let valid = stage("validate", || scene.validate());
-    valid.with_context(|| args.file.display().to_string())?;
-    Ok(scene)
-}
-
-fn required_features(args: &RenderArgs) -> Vec<String> {
-    match args.require.iter().any(|name| name == parse::ALL) {
-        true => Features::names().into_iter().map(String::from).collect(),
-        false => args.require.clone(),
-    }
-}
-
-fn open_device(args: &RenderArgs) -> Result<Device> {
-    let from_variable = || {
-        std::env::var("ETENDUE_DEVICE")
-            .ok()
-            .filter(|s| !s.is_empty())
-    };
-    let selector = args.device.clone().or_else(from_variable);
-    let device = Device::open(selector.as_deref())?;
-    // Measured here, beside the loading; the device remembers.
-    stage("probe", || device.probe())?;
-    Ok(device)
 }
 
 fn warn_of_scene(scene: &Scene, prepared: &Prepared, args: &RenderArgs, warnings: &mut Warnings) {
@@ -219,6 +166,17 @@ fn warn_of_scene(scene: &Scene, prepared: &Prepared, args: &RenderArgs, warnings
             "the scene has no light (no emission, no punctual light, no environment), so the \
              picture will be black: add light from all around with `--env 1`",
         );
+    }
+}
+
+fn warn_of_optimization(args: &RenderArgs, device: &DeviceInfo, warnings: &mut Warnings) {
+    let is_missed =
+        args.optimization == Optimization::Quick && Optimization::of(device) != Optimization::Quick;
+    if is_missed {
+        warnings.add(format!(
+            "the kernel is optimized in full: --optimization quick takes lavapipe of Mesa 25 or newer, and the driver is {}",
+            device.driver
+        ));
     }
 }
 

@@ -10,6 +10,7 @@ use super::guiding_report::GuidingReport;
 use super::lights_report::LightsReport;
 use super::load;
 use super::message::Warnings;
+use super::optimization::Optimization;
 use crate::gpu::DeviceInfo;
 use crate::host::stages::{Startup, startup};
 use crate::render::{Film, Progress, Settings};
@@ -38,6 +39,8 @@ pub struct Report {
     pub device: String,
     /// Its driver.
     pub driver: String,
+    /// How much it optimizes kernels: `quick` or `full`.
+    pub optimization: &'static str,
     /// Columns.
     pub width: u32,
     /// Rows.
@@ -178,6 +181,7 @@ impl Report {
             focus_distance: lens.map(|lens| lens.focus_distance),
             device: device.name.clone(),
             driver: device.driver.clone(),
+            optimization: Optimization::of(device).name(),
             width: settings.width,
             height: settings.height,
             seed: settings.seed,

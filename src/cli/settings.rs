@@ -40,6 +40,12 @@ pub fn of(args: &RenderArgs, scene: &Scene) -> Result<Settings> {
     Ok(with_camera(args, camera, &scene.cameras[camera]))
 }
 
+/// Paths of the picture, at most: how many they are may depend on the scene's camera.
+pub fn most_paths(args: &RenderArgs) -> u64 {
+    let [width, height] = args.size.unwrap_or([DEFAULT_SIDE as u32; 2]);
+    (u64::from(width) * u64::from(height)).saturating_mul(args.spp)
+}
+
 /// The integrators that `--aov` names, each once.
 pub fn aov_integrators(args: &RenderArgs) -> Vec<&String> {
     let mut names: Vec<&String> = Vec::new();

@@ -9,7 +9,7 @@ use bytemuck::Pod;
 use super::bind::{BindGroup, Bound};
 use super::error::{GpuError, check_limit};
 use super::info::DeviceInfo;
-use super::instance::Instance;
+use super::instance::{Candidate, Instance};
 use super::logical::Logical;
 use super::memory::{Buffer, Purpose, RawBuffer};
 use super::options::OpenOptions;
@@ -29,6 +29,47 @@ pub struct Device {
     queue: Arc<Mutex<Queue>>,
 }
 
+/// A device that was chosen and is not open yet.
+pub struct FoundDevice {
+    instance: Instance,
+    candidate: Candidate,
+    options: OpenOptions,
+}
+
+impl FoundDevice {
+    /// Chooses the device that `selector` means, as [`Device::open`] does.
+    ///
+    /// # Errors
+    /// As [`Device::open`].
+    pub fn find(selector: Option<&str>, options: OpenOptions) -> Result<Self, GpuError> {
+        let instance = stage("instance", || Instance::new(options.validation))?;
+        let mut candidates = stage("devices", || instance.candidates())?;
+        let infos: Vec<_> = candidates.iter().map(|found| &found.info).collect();
+        let chosen = select(&infos, selector)?;
+        Ok(Self {
+            instance,
+            candidate: candidates.swap_remove(chosen),
+            options,
+        })
+    }
+
+    /// Name, driver and limits.
+    pub fn info(&self) -> &DeviceInfo {
+        &self.candidate.info
+    }
+
+    /// Opens it.
+    ///
+    /// # Errors
+    /// What the driver says.
+    pub fn open(self) -> Result<Device, GpuError> {
+        let create = || Logical::new(self.instance, self.candidate, self.options.staging);
+        let logical = Arc::new(stage("device", create)?);
+        let queue = Arc::new(Mutex::new(Queue::new(&logical)?));
+        Ok(Device { logical, queue })
+    }
+}
+
 impl Device {
     /// Opens the device that `selector` means: an index in [`devices`](super::devices), or a part of a name in
     /// any case; without one the best of discrete, integrated, virtual, CPU. The environment variable
@@ -46,15 +87,7 @@ impl Device {
     /// # Errors
     /// As [`Device::open`].
     pub fn open_with(selector: Option<&str>, options: OpenOptions) -> Result<Self, GpuError> {
-        let instance = stage("instance", || Instance::new(options.validation))?;
-        let mut candidates = stage("devices", || instance.candidates())?;
-        let infos: Vec<_> = candidates.iter().map(|found| &found.info).collect();
-        let chosen = select(&infos, selector)?;
-        let candidate = candidates.swap_remove(chosen);
-        let create = || Logical::new(instance, candidate, options.staging);
-        let logical = Arc::new(stage("device", create)?);
-        let queue = Arc::new(Mutex::new(Queue::new(&logical)?));
-        Ok(Self { logical, queue })
+        FoundDevice::find(selector, options)?.open()
     }
 
     /// Name, driver and limits.

@@ -4,6 +4,7 @@ use ash::vk;
 use serde::Serialize;
 
 use super::error::GpuError;
+use super::llvmpipe::can_compile_quickly;
 
 /// The sort of a device.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
@@ -77,6 +78,9 @@ pub struct DeviceInfo {
     pub int64: bool,
     /// Whether shaders may use 64-bit floats.
     pub float64: bool,
+    /// Whether the driver can leave out optimization and compiles a kernel in a fraction of the time then
+    /// ([`compile_quickly`](super::compile_quickly)).
+    pub can_compile_quickly: bool,
     /// Nanoseconds of a timestamp's step; 0 where the queue has none.
     pub timestamp_period: f32,
     /// Bits of a timestamp; 0 where the queue has none.
@@ -126,6 +130,7 @@ impl DeviceInfo {
         Self {
             index,
             name: name.to_string_lossy().into_owned(),
+            can_compile_quickly: can_compile_quickly(&extended.driver),
             driver: extended.driver,
             kind: kind(basic.device_type),
             api_version: version(basic.api_version),

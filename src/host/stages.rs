@@ -63,6 +63,12 @@ pub fn begin() {
     record().begin = Some(Instant::now());
 }
 
+/// Seconds since the start of the program; 0 where nobody said when that was.
+pub fn seconds_since_start() -> f64 {
+    let begin = record().begin;
+    begin.map_or(0.0, |begin| begin.elapsed().as_secs_f64())
+}
+
 /// Runs a stage and notes its time; the times of one name add up. After the first sample nothing is noted.
 pub fn stage<T>(name: &'static str, work: impl FnOnce() -> T) -> T {
     timed_stage(name, work).0

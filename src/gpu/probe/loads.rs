@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::kernel;
 use crate::gpu::pipeline::BindingKind;
-use crate::gpu::{Device, GpuError};
+use crate::gpu::{Device, GpuError, compiles_quickly};
 use crate::host::Cache;
 
 /// Invocations of a run.
@@ -41,7 +41,17 @@ pub(in crate::gpu) fn prefers_doublewords(
 fn key(device: &Device) -> [u8; 32] {
     let info = device.info();
     let mut hasher = blake3::Hasher::new();
-    for part in [&info.name, &info.driver, include_str!("loads.wgsl")] {
+    let compiles = if compiles_quickly(info) {
+        "quickly"
+    } else {
+        ""
+    };
+    for part in [
+        &info.name,
+        &info.driver,
+        include_str!("loads.wgsl"),
+        compiles,
+    ] {
         hasher.update(part.as_bytes()).update(&[0]);
     }
     *hasher.finalize().as_bytes()

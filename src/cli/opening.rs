@@ -1,0 +1,80 @@
+//! What a render begins with: the scene from its files, and the device.
+
+use std::panic::resume_unwind;
+
+use anyhow::{Context, Result};
+
+use super::args::RenderArgs;
+use super::message::Warnings;
+use super::optimization::Optimization;
+use super::report::{Seconds, timed};
+use super::{camera, environment, parse, settings};
+use crate::gpu::{Device, FoundDevice, OpenOptions};
+use crate::host::stages::stage;
+use crate::render::Settings;
+use crate::scene::{Features, Scene, gltf};
+
+/// Reads the scene while the device is opened.
+///
+/// # Errors
+/// Bad input, or no device. If both fail, it is the scene's error that counts.
+pub fn load_and_open(
+    args: &RenderArgs,
+    time: &mut Seconds,
+    warnings: &mut Warnings,
+) -> Result<((Scene, Settings), Device)> {
+    // How the driver compiles must be settled before there is a second thread.
+    let found = Optimization::wants_quick(args).then(|| {
+        let found = timed(&mut time.device, || find_device(args));
+        found.inspect(|found| Optimization::ask_for_quick(found.info()))
+    });
+    std::thread::scope(|scope| {
+        let device = &mut time.device;
+        let find = || found.unwrap_or_else(|| find_device(args));
+        let opening = scope.spawn(|| timed(device, || open_device(find()?)));
+        let scene = timed(&mut time.load, || load(args, warnings));
+        let scene = scene.and_then(|scene| Ok((settings::of(args, &scene)?, scene)));
+        let scene = scene.map(|(settings, scene)| (scene, settings));
+        let device = opening.join().unwrap_or_else(|panic| resume_unwind(panic));
+        Ok((scene?, device?))
+    })
+}
+
+fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
+    // The environment first: it is read faster, so a mistake in it is found sooner.
+    let environment = stage("environment", || environment::load(args, warnings))?;
+    let mut scene = gltf::load(&args.file, &args.load.options())?;
+    if environment.is_some() {
+        scene.environment = environment;
+    }
+    scene.required_features = required_features(args);
+    camera::apply(args, &mut scene)?;
+    let valid = stage("validate", || scene.validate());
+    valid.with_context(|| args.file.display().to_string())?;
+    Ok(scene)
+}
+
+fn required_features(args: &RenderArgs) -> Vec<String> {
+    match args.require.iter().any(|name| name == parse::ALL) {
+        true => Features::names().into_iter().map(String::from).collect(),
+        false => args.require.clone(),
+    }
+}
+
+fn find_device(args: &RenderArgs) -> Result<FoundDevice> {
+    let from_variable = || {
+        std::env::var("ETENDUE_DEVICE")
+            .ok()
+            .filter(|s| !s.is_empty())
+    };
+    let selector = args.device.clone().or_else(from_variable);
+    let options = OpenOptions::from_env();
+    Ok(FoundDevice::find(selector.as_deref(), options)?)
+}
+
+fn open_device(found: FoundDevice) -> Result<Device> {
+    let device = found.open()?;
+    // Measured here, beside the loading; the device remembers.
+    stage("probe", || device.probe())?;
+    Ok(device)
+}

@@ -1,0 +1,109 @@
+//! How much the driver optimizes kernels, where it has a choice: a picture that is drawn in less time than its kernel
+//! takes to compile had better have one that is there sooner.
+
+use std::str::FromStr;
+use std::thread::available_parallelism;
+
+use super::args::RenderArgs;
+use super::settings;
+use crate::gpu::{DeviceInfo, compile_quickly, compiles_quickly};
+use crate::host::names;
+
+/// How much kernels are optimized. What they compute is the same to the bit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Optimization {
+    /// Little for pictures of few paths.
+    #[default]
+    Auto,
+    /// As little as possible.
+    Quick,
+    /// As the driver does by itself.
+    Full,
+}
+
+/// Paths for each core up to which a kernel that is compiled quickly pays, depending on the scene from 0.8 to 9.7 of this
+/// (docs/kernel.md).
+const QUICK_PATHS: u64 = 1 << 16;
+
+impl Optimization {
+    /// Its name: `auto`, `quick` or `full`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Quick => "quick",
+            Self::Full => "full",
+        }
+    }
+
+    /// Whether a render wants a kernel that is compiled quickly, if the driver can do that.
+    pub fn wants_quick(args: &RenderArgs) -> bool {
+        match args.optimization {
+            Self::Auto => settings::most_paths(args) <= QUICK_PATHS * cores(),
+            Self::Quick => true,
+            Self::Full => false,
+        }
+    }
+
+    /// What a device that has been opened does: `quick` or `full`.
+    pub fn of(device: &DeviceInfo) -> Self {
+        match compiles_quickly(device) {
+            true => Self::Quick,
+            false => Self::Full,
+        }
+    }
+
+    /// Asks the driver of a device that is to be opened to compile quickly, if it can. No other thread may use the
+    /// environment meanwhile.
+    pub fn ask_for_quick(device: &DeviceInfo) {
+        if device.can_compile_quickly {
+            compile_quickly();
+        }
+    }
+}
+
+fn cores() -> u64 {
+    available_parallelism().map_or(1, |cores| cores.get() as u64)
+}
+
+impl std::fmt::Display for Optimization {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Optimization {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let all = [Self::Auto, Self::Quick, Self::Full];
+        names::find(&all, Self::name, name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: RenderArgs,
+    }
+
+    #[test]
+    fn few_paths_want_a_quick_kernel() {
+        let wants = |line: &str| {
+            let words = ["render", "scene.gltf"].into_iter().chain(line.split(' '));
+            Optimization::wants_quick(&Line::parse_from(words).args)
+        };
+        let many = (QUICK_PATHS * cores()).to_string();
+        assert!(wants("--size 64x64 --spp 16"));
+        assert!(wants(&format!("--size 1x1 --spp {many}")));
+        assert!(!wants(&format!("--size 2x1 --spp {many}")));
+        assert!(!wants(&format!("--size 4096x4096 --spp {}", u64::MAX)));
+        assert!(!wants("--size 64x64 --spp 16 --optimization full"));
+        assert!(wants("--size 4096x4096 --optimization quick"));
+    }
+}
