@@ -21,8 +21,8 @@ pub enum Optimization {
     Full,
 }
 
-/// Paths for each core up to which a kernel that is compiled quickly pays, depending on the scene from 0.8 to 9.7 of this
-/// (docs/kernel.md).
+/// Paths for each core up to which a kernel that is compiled quickly is asked for. It pays up to 0.8 to 18 times as many,
+/// by scene and driver (docs/kernel.md).
 const QUICK_PATHS: u64 = 1 << 16;
 
 impl Optimization {
