@@ -115,6 +115,24 @@ fn a_struct_that_differs_from_the_host_s_is_refused() {
 }
 
 #[test]
+fn what_the_host_could_not_run_is_refused() {
+    let (_folder, shaders) = exported();
+    let refuses = |file: &str, change: [&str; 2], parts: &[&str]| {
+        let edited = shaders.join(file);
+        let source = fs::read_to_string(&edited).expect("a shader");
+        let broken = source.replacen(change[0], change[1], 1);
+        assert_ne!(source, broken);
+        fs::write(&edited, broken).expect("a file");
+        render(&["--shaders", &text(&shaders), "--json", "-"]).refused(parts);
+        fs::write(&edited, source).expect("a file");
+    };
+    let size = ["@workgroup_size(64", "@workgroup_size(32"];
+    refuses("main.wgsl", size, &["workgroup_size(32", "64"]);
+    let group = ["@group(0) @binding(4)", "@group(1) @binding(4)"];
+    refuses("bindings.wgsl", group, &["group 1", "materials"]);
+}
+
+#[test]
 fn a_new_integrator_is_a_file() {
     let (_folder, shaders) = exported();
     let source = "#include \"surface.wgsl\"\n#include \"sampler.wgsl\"\n\n\

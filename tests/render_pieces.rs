@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use etendue::accel::BuildOptions;
 use etendue::gpu::Device;
 use etendue::render::{Film, GpuScene, Prepared, Renderer, Settings};
-use etendue::scene::gltf;
+use etendue::scene::{Environment, EnvironmentImage, gltf};
 use etendue::shader::ShaderLibrary;
 
 fn bits(film: &Film) -> &[u8] {
@@ -110,10 +110,13 @@ fn the_picture_does_not_depend_on_the_width_of_reads() {
         return;
     }
     let library = ShaderLibrary::embedded();
-    // A tree, textures and many lamps; a list.
+    // A tree, textures and many lamps; a list; and an environment.
     for name in ["many_lights", "foliage", "cornell_box"] {
         let path = format!("scenes/{name}.gltf");
-        let scene = gltf::load(path.as_ref(), &Default::default()).expect("a scene");
+        let mut scene = gltf::load(path.as_ref(), &Default::default()).expect("a scene");
+        if name == "foliage" {
+            scene.environment = Some(sky());
+        }
         let prepared = Prepared::new(&scene, 0, &BuildOptions::default()).expect("a flat scene");
         let gpu_scene = GpuScene::upload(&device, &prepared).expect("memory");
         let render = |doublewords| {
@@ -130,8 +133,24 @@ fn the_picture_does_not_depend_on_the_width_of_reads() {
             let mut renderer = renderer.expect("a kernel");
             let flow = renderer.render(&mut |_, _| ControlFlow::Continue(()));
             assert!(flow.expect("a render").is_continue());
+            let declares = renderer.wgsl().contains("film: array<u64>");
+            assert_eq!(declares, doublewords, "{name}");
             renderer.film().expect("a film")
         };
         assert_eq!(bits(&render(true)), bits(&render(false)), "{name}");
+    }
+}
+
+fn sky() -> Environment {
+    let texels = (0..32).map(|i| [0.1 * i as f32, 1.0, 0.5]).collect();
+    let image = EnvironmentImage {
+        width: 8,
+        height: 4,
+        texels,
+    };
+    Environment {
+        radiance: [1.0; 3],
+        rotation: 0.0,
+        image: Some(image.into()),
     }
 }

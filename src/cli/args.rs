@@ -74,8 +74,9 @@ pub struct RenderArgs {
     #[arg(long, value_name = "NAME", default_value_t)]
     pub guiding: Guiding,
 
-    /// How much the driver optimizes the kernel, where it has a choice (lavapipe of Mesa 25 or newer): auto (little for
-    /// pictures of few paths, which then are done sooner), quick, full. The picture is the same
+    /// How much the driver optimizes the kernel, where it has a choice (lavapipe of Mesa 25 or newer). quick: it compiles in a
+    /// third to a half of the time and draws three to four times as long, the same picture; full; auto: quick up to 65,536
+    /// paths (pixels times samples) a thread, so that a scene is sooner seen for the first time
     #[arg(long, value_name = "NAME", default_value_t)]
     pub optimization: Optimization,
 

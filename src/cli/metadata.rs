@@ -35,6 +35,7 @@ pub fn metadata(
         ),
         ("device", report.device.clone()),
         ("driver", report.driver.clone()),
+        ("optimization", report.optimization.into()),
         ("interrupted", report.interrupted.to_string()),
         ("command", command_line(std::env::args_os().skip(1))),
     ];

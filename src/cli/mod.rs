@@ -38,7 +38,8 @@ use exit::Exit;
 /// What `--help` says about the environment.
 const ENVIRONMENT: &str = "\
 Environment: ETENDUE_DEVICE is the default of --device. Compiled shaders are kept in \
-ETENDUE_CACHE_DIR (default: etendue/kernels in XDG_CACHE_HOME or ~/.cache); ETENDUE_NO_CACHE=1 keeps none.";
+ETENDUE_CACHE_DIR (default: etendue/kernels in XDG_CACHE_HOME or ~/.cache); ETENDUE_NO_CACHE=1 keeps none. \
+LP_NATIVE_VECTOR_WIDTH and GALLIVM_PERF are lavapipe's and set for it (--optimization).";
 
 /// Étendue: a headless path tracer. glTF in, OpenEXR out, on any Vulkan device.
 #[derive(Debug, Parser)]

@@ -9,25 +9,33 @@ use super::message::Warnings;
 use super::optimization::Optimization;
 use super::report::{Seconds, timed};
 use super::{camera, environment, parse, settings};
-use crate::gpu::{Device, FoundDevice, OpenOptions};
+use crate::gpu::{Device, FoundDevice, OpenOptions, set_optimization};
 use crate::host::stages::stage;
 use crate::render::Settings;
 use crate::scene::{Features, Scene, gltf};
 
-/// Reads the scene while the device is opened.
+/// Settles how the driver compiles, for which its version must be known where that may be quickly: then gives the device.
+/// To be called while the program has no second thread.
+pub fn settle_optimization(args: &RenderArgs, time: &mut Seconds) -> Option<Result<FoundDevice>> {
+    if args.optimization == Optimization::Full {
+        set_optimization(true);
+    }
+    Optimization::wants_quick(args).then(|| {
+        let found = timed(&mut time.device, || find_device(args));
+        found.inspect(|found| Optimization::ask_for_quick(found.info()))
+    })
+}
+
+/// Reads the scene while the device is opened, that is found here if it was not before.
 ///
 /// # Errors
 /// Bad input, or no device. If both fail, it is the scene's error that counts.
 pub fn load_and_open(
     args: &RenderArgs,
+    found: Option<Result<FoundDevice>>,
     time: &mut Seconds,
     warnings: &mut Warnings,
 ) -> Result<((Scene, Settings), Device)> {
-    // How the driver compiles must be settled before there is a second thread.
-    let found = Optimization::wants_quick(args).then(|| {
-        let found = timed(&mut time.device, || find_device(args));
-        found.inspect(|found| Optimization::ask_for_quick(found.info()))
-    });
     std::thread::scope(|scope| {
         let device = &mut time.device;
         let find = || found.unwrap_or_else(|| find_device(args));

@@ -2,11 +2,10 @@
 //! takes to compile had better have one that is there sooner.
 
 use std::str::FromStr;
-use std::thread::available_parallelism;
 
 use super::args::RenderArgs;
 use super::settings;
-use crate::gpu::{DeviceInfo, compile_quickly, compiles_quickly};
+use crate::gpu::{DeviceInfo, compiles_quickly, set_optimization, threads};
 use crate::host::names;
 
 /// How much kernels are optimized. What they compute is the same to the bit.
@@ -21,8 +20,8 @@ pub enum Optimization {
     Full,
 }
 
-/// Paths for each core up to which a kernel that is compiled quickly is asked for. It pays up to 0.8 to 18 times as many,
-/// by scene and driver (docs/kernel.md).
+/// Paths for each thread of the driver up to which a kernel that is compiled quickly is asked for. Drawing the picture
+/// and compiling take as long in both ways at 1.2 to 18 times as many, by scene and driver (docs/kernel.md).
 const QUICK_PATHS: u64 = 1 << 16;
 
 impl Optimization {
@@ -38,7 +37,7 @@ impl Optimization {
     /// Whether a render wants a kernel that is compiled quickly, if the driver can do that.
     pub fn wants_quick(args: &RenderArgs) -> bool {
         match args.optimization {
-            Self::Auto => settings::most_paths(args) <= QUICK_PATHS * cores(),
+            Self::Auto => settings::most_paths(args) <= QUICK_PATHS * threads() as u64,
             Self::Quick => true,
             Self::Full => false,
         }
@@ -52,17 +51,13 @@ impl Optimization {
         }
     }
 
-    /// Asks the driver of a device that is to be opened to compile quickly, if it can. No other thread may use the
-    /// environment meanwhile.
+    /// Asks the driver of a device that is to be opened to compile quickly, if it can. To be called while the program has
+    /// no second thread.
     pub fn ask_for_quick(device: &DeviceInfo) {
         if device.can_compile_quickly {
-            compile_quickly();
+            set_optimization(false);
         }
     }
-}
-
-fn cores() -> u64 {
-    available_parallelism().map_or(1, |cores| cores.get() as u64)
 }
 
 impl std::fmt::Display for Optimization {
@@ -98,7 +93,7 @@ mod tests {
             let words = ["render", "scene.gltf"].into_iter().chain(line.split(' '));
             Optimization::wants_quick(&Line::parse_from(words).args)
         };
-        let many = (QUICK_PATHS * cores()).to_string();
+        let many = (QUICK_PATHS * threads() as u64).to_string();
         assert!(wants("--size 64x64 --spp 16"));
         assert!(wants(&format!("--size 1x1 --spp {many}")));
         assert!(!wants(&format!("--size 2x1 --spp {many}")));

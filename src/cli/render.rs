@@ -11,7 +11,7 @@ use super::interrupt::Interrupt;
 use super::lights_report::LightsReport;
 use super::message::{self, Warnings};
 use super::metadata::metadata;
-use super::opening::load_and_open;
+use super::opening::{load_and_open, settle_optimization};
 use super::optimization::Optimization;
 use super::outputs::Outputs;
 use super::progress::ProgressLine;
@@ -37,15 +37,17 @@ const NEED_NO_LIGHT: [&str; 4] = ["albedo", "ao", "depth", "normals"];
 pub fn run(args: &RenderArgs) -> Result<Exit> {
     let mut time = Seconds::default();
     let mut warnings = Warnings::new(args.quiet);
-    let interrupt = Interrupt::install(args.quiet);
 
     // Refuse what can be refused before any work is done.
     let outputs = Outputs::check(args)?;
     let library = shaders::library(args.shaders.as_deref())?.with_cache(Cache::from_env());
     settings::check_early(args, &library)?;
+    let found = settle_optimization(args, &mut time);
+    // Starts the second thread.
+    let interrupt = Interrupt::install(args.quiet);
 
     // From files to buffers and a kernel on the device.
-    let ((mut scene, mut settings), device) = load_and_open(args, &mut time, &mut warnings)?;
+    let ((mut scene, mut settings), device) = load_and_open(args, found, &mut time, &mut warnings)?;
     settings.doublewords = stage("probe", || device.prefers_doublewords(library.cache()))?;
     let options = BuildOptions {
         instancing: args.instancing,

@@ -79,7 +79,7 @@ pub struct DeviceInfo {
     /// Whether shaders may use 64-bit floats.
     pub float64: bool,
     /// Whether the driver can leave out optimization and compiles a kernel in a fraction of the time then
-    /// ([`compile_quickly`](super::compile_quickly)).
+    /// ([`compiles_quickly`](super::compiles_quickly)).
     pub can_compile_quickly: bool,
     /// Nanoseconds of a timestamp's step; 0 where the queue has none.
     pub timestamp_period: f32,

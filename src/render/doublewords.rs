@@ -16,12 +16,16 @@ pub(super) struct Entry<'a> {
 
 impl<'a> Entry<'a> {
     /// An entry of a type, whose struct is in the text `types`; none if it has no even number of words, or fields that
-    /// are not made of words.
+    /// are not made of words, or are placed by an attribute.
     pub fn new(types: &'a str, kind: &'a str) -> Option<Self> {
         let fields = match numbers_in(kind) {
             Some(_) => vec![("", kind)],
             None => fields_of(types, kind),
         };
+        // A name with an attribute has an offset of its own.
+        if fields.iter().any(|(name, _)| name.contains('@')) {
+            return None;
+        }
         let numbers: Option<usize> = fields.iter().map(|(_, kind)| numbers_in(kind)).sum();
         let words = numbers.filter(|words| *words > 0 && words.is_multiple_of(2))?;
         Some(Self {
@@ -125,4 +129,25 @@ pub(super) fn film_accessors(pixel: &Entry<'_>) -> String {
         "fn load_pixel(index: u32) -> FilmPixel {{\n{reads}{value}}}\n\
          fn store_pixel(index: u32, pixel: FilmPixel) {{\n{writes}}}\n"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::ShaderLibrary;
+
+    #[test]
+    fn entries_are_those_of_the_shader_s_text() {
+        let library = ShaderLibrary::embedded();
+        let types = library.read("types.wgsl").expect("types.wgsl");
+        let count = |kind| Entry::new(types, kind).map(|entry| entry.count);
+        let counts = ["Element", "vec2f", "vec4f", "LightNode", "FilmPixel"].map(count);
+        assert_eq!(counts, [8, 1, 2, 4, 8].map(Some));
+        assert_eq!(count("u32"), None, "half a double word");
+        assert_eq!(count("NoSuchStruct"), None);
+        let odd = "struct Odd {\n    a: vec3f,\n}\nstruct Placed {\n    @size(16) a: vec2f,\n}\nstruct Long {\n    a: vec2<f32>,\n}\n";
+        for kind in ["Odd", "Placed", "Long"] {
+            assert!(Entry::new(odd, kind).is_none(), "{kind}");
+        }
+    }
 }

@@ -204,8 +204,8 @@ fn check_counts(scene: &Scene, sharing: &Sharing) -> Result<(), RenderError> {
     let materials = scene.materials.len() as u64;
     let limit = u64::from(layout::MATERIAL_INDEX_MASK) + 1;
     check("materials", materials, limit)?;
-    // A vertex has at most 15 words, counted in 32 bits.
-    check("vertices", vertices, u64::from(u32::MAX) / 15)?;
+    // A vertex has at most 16 words, counted in 32 bits.
+    check("vertices", vertices, u64::from(u32::MAX) / 16)?;
     let sides = scene.images.iter().flat_map(|i| [i.width, i.height]);
     let side = sides.max().unwrap_or(0).into();
     check("texels along a side of an image", side, MAX_SIDE)?;

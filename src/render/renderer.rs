@@ -87,6 +87,12 @@ impl<'a> Renderer<'a> {
             let device = device.info().name.clone();
             return Err(RenderError::NoInt64 { device });
         }
+        if compiled.workgroup_size != [TILE_LANES, 1, 1] {
+            let [x, y, z] = compiled.workgroup_size;
+            return Err(RenderError::Setting(format!(
+                "main.wgsl has @workgroup_size({x}, {y}, {z}): it must be {TILE_LANES}, as many as a tile has pixels"
+            )));
+        }
         let kinds: Vec<(u32, BindingKind)> = compiled
             .bindings
             .iter()

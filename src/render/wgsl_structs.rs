@@ -1,4 +1,4 @@
-//! What the text of shaders says of its structs. That it is what the host has, too, is compared when a kernel is compiled.
+//! What the text of shaders says of its structs. Whether the host's agree is checked when a kernel is compiled.
 
 /// Names and types of the fields of a struct in a text; none if it has no such struct.
 pub(super) fn fields_of<'a>(text: &'a str, name: &str) -> Vec<(&'a str, &'a str)> {

@@ -66,6 +66,15 @@ fn reflect(
             return Err(ShaderError::Validation(Box::new(diagnostic)));
         }
     };
+    if let Some(at) = variable.binding.filter(|at| at.group != 0) {
+        let message = format!(
+            "`{name}` is in group {}: all bindings are in group 0",
+            at.group
+        );
+        let place = module.global_variables.get_span(handle).to_range();
+        let diagnostic = report.at(message, place.unwrap_or(0..0));
+        return Err(ShaderError::Validation(Box::new(diagnostic)));
+    }
     Ok(variable.binding.map(|at| Binding {
         group: at.group,
         binding: at.binding,

@@ -167,6 +167,22 @@ fn what_a_stream_holds_counts_and_not_what_the_accessors_promise() {
 }
 
 #[test]
+fn triangles_of_a_stream_fit_positions_beside_it_or_are_refused() {
+    let beside = |corners: usize| {
+        let mut builder = sequential();
+        let positions = builder.floats(&[0.5; 12][..3 * corners], "VEC3");
+        primitive(&mut builder)["attributes"] = json!({"POSITION": positions});
+        extension(&mut builder)["attributes"] = json!({});
+        builder
+    };
+    assert_eq!(beside(4).scene().meshes[0].positions.len(), 4);
+    refused(
+        beside(3),
+        &["a triangle of its Draco stream refers to vertex 3", "has 3"],
+    );
+}
+
+#[test]
 fn wrong_descriptions_are_refused() {
     let change = |pointer: &str, value: Value| {
         let mut builder = sequential();

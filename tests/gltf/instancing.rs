@@ -103,6 +103,12 @@ fn wrong_attributes_are_refused() {
         .expect("an index") as usize;
     builder.json["accessors"][turns]["normalized"] = json!(false);
     refused(builder, &["ROTATION has integers"]);
+    // So many that their bytes are more than 64 bits can count, and of zeros, so that no buffer is too short.
+    let mut builder = seeds::instances();
+    let zeros = json!({"componentType": F32, "type": "VEC3", "count": 1_u64 << 60});
+    let zeros = builder.push("accessors", zeros);
+    *instancing(&mut builder) = json!({"TRANSLATION": zeros});
+    refused(builder, &["instances are too many"]);
     let mut builder = seeds::instances();
     let none = builder.floats(&[0.0; 12], "VEC4");
     instancing(&mut builder)["ROTATION"] = json!(none);

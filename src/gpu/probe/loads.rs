@@ -8,11 +8,12 @@ use std::time::{Duration, Instant};
 
 use super::kernel;
 use crate::gpu::pipeline::BindingKind;
-use crate::gpu::{Device, GpuError, compiles_quickly};
+use crate::gpu::{Device, DeviceKind, GpuError, compiles_quickly};
 use crate::host::Cache;
 
-/// Invocations of a run.
-const LANES: u32 = 1 << 14;
+/// Invocations of a run: some 10 ms of work on two cores, and on a GPU as many as it takes to see more than the dispatch.
+const CPU_LANES: u32 = 1 << 12;
+const GPU_LANES: u32 = 1 << 14;
 /// Bytes that are read from, as in the shader.
 const BYTES: u32 = 512 * 64;
 /// Runs of each form; the quickest counts.
@@ -62,7 +63,11 @@ fn measure(device: &Device) -> Result<bool, GpuError> {
         .map(|i| i.wrapping_mul(0x9e37_79b9))
         .collect();
     let input = device.buffer_with("probe input", &data)?;
-    let output = device.buffer("probe output", u64::from(4 * LANES))?;
+    let lanes = match device.info().kind {
+        DeviceKind::Cpu => CPU_LANES,
+        _ => GPU_LANES,
+    };
+    let output = device.buffer("probe output", u64::from(4 * lanes))?;
     let time = |entry: &str, binding: u32| {
         let kinds = [(1, BindingKind::Storage), (binding, BindingKind::Storage)];
         let spirv = kernel::compile(include_str!("loads.wgsl"), entry)?;
@@ -73,7 +78,7 @@ fn measure(device: &Device) -> Result<bool, GpuError> {
         let mut quickest = Duration::MAX;
         for _ in 0..RUNS {
             let start = Instant::now();
-            device.dispatch(&pipeline, &group, [LANES / 64, 1, 1])?;
+            device.dispatch(&pipeline, &group, [lanes / 64, 1, 1])?;
             quickest = quickest.min(start.elapsed());
         }
         Ok::<f64, GpuError>(quickest.as_secs_f64())

@@ -1,7 +1,8 @@
 //! What the records of the training pass say.
 
 use super::density::SQUARES;
-use crate::render::layout::{NONE, PathRecord};
+use super::table::FACES;
+use crate::render::layout::PathRecord;
 
 /// Records of a path: its own, then one for each of its first vertices (`RECORDS_PER_PATH` of `shaders/guide.wgsl`).
 pub const RECORDS_PER_PATH: usize = 8;
@@ -34,7 +35,9 @@ fn lesson(vertex: &PathRecord, gathered: f32) -> Option<Lesson> {
     let after = f64::from(gathered) - f64::from(vertex.gathered);
     let light = after / f64::from(vertex.beta);
     let is_somewhere = vertex.position.iter().all(|p| p.is_finite());
-    let is_useful = vertex.square != NONE && light.is_finite() && is_somewhere;
+    // NONE is out of range, and so may be what an edited shader writes.
+    let in_range = vertex.square < FACES * SQUARES as u32;
+    let is_useful = in_range && light.is_finite() && is_somewhere;
     is_useful.then(|| Lesson {
         position: vertex.position,
         face: vertex.square / SQUARES as u32,
@@ -61,6 +64,7 @@ pub fn first_vertex(path: &[PathRecord]) -> Option<(Lesson, f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::layout::NONE;
 
     fn record(square: u32, beta: f32, gathered: f32) -> PathRecord {
         PathRecord {

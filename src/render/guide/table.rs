@@ -8,7 +8,7 @@ const LEVELS: usize = 4;
 /// Cells of the finest level along an axis.
 const CELLS: u32 = 1 << (LEVELS - 1);
 /// Directions of a normal.
-const FACES: u32 = 6;
+pub(super) const FACES: u32 = 6;
 /// Words before the table of cells: the grid's lower corner, cells per metre, and two that are unused.
 const HEADER: usize = 8;
 /// Samples with which a cell's surroundings count against its own ([`learn`]), and the fewest lessons that make a density.

@@ -42,7 +42,7 @@ pub(super) fn read(
         }
     }
     // An instance takes more than its numbers: a matrix, a name, and what becomes of it later.
-    if !source.data.charge(count as u64 * 256) {
+    if !source.data.charge((count as u64).saturating_mul(256)) {
         return Err(extension.fault(format!("{count} instances are too many")));
     }
     let translations = vectors(translation, names[0], source)?;

@@ -110,7 +110,10 @@ impl<'a> Primitive<'a> {
         self.vertices = positions.count;
         self.check_counts(positions.count)?;
         let mut indices = match decoded {
-            Some(triangles) => triangles,
+            Some(triangles) => {
+                self.check_decoded(&triangles, positions.count)?;
+                triangles
+            }
             None => self.triangles(topology, positions.count)?,
         };
         if indices.is_empty() {
@@ -261,6 +264,17 @@ impl<'a> Primitive<'a> {
         Err(self.item.fault(format!(
             "index {position} of {} refers to vertex {index}, {reason}",
             indices.len()
+        )))
+    }
+
+    /// Triangles of a Draco stream fit its own attributes, but not always others that the primitive has.
+    fn check_decoded(&self, triangles: &[[u32; 3]], vertices: usize) -> Result<(), LoadError> {
+        let indices = triangles.as_flattened();
+        let Some(wrong) = indices.iter().find(|&&index| index as usize >= vertices) else {
+            return Ok(());
+        };
+        Err(self.item.fault(format!(
+            "a triangle of its Draco stream refers to vertex {wrong}, but POSITION, which is not in the stream, has {vertices}"
         )))
     }
 
