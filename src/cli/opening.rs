@@ -22,7 +22,13 @@ pub fn settle_optimization(args: &RenderArgs, time: &mut Seconds) -> Option<Resu
     }
     Optimization::wants_quick(args).then(|| {
         let found = timed(&mut time.device, || find_device(args));
-        found.inspect(|found| Optimization::ask_for_quick(found.info()))
+        if found
+            .as_ref()
+            .is_ok_and(|found| found.info().can_compile_quickly)
+        {
+            set_optimization(false);
+        }
+        found
     })
 }
 

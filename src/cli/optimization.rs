@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use super::args::RenderArgs;
 use super::settings;
-use crate::gpu::{DeviceInfo, compiles_quickly, set_optimization, threads};
+use crate::gpu::{DeviceInfo, compiles_quickly, threads};
 use crate::host::names;
 
 /// How much kernels are optimized. What they compute is the same to the bit.
@@ -48,14 +48,6 @@ impl Optimization {
         match compiles_quickly(device) {
             true => Self::Quick,
             false => Self::Full,
-        }
-    }
-
-    /// Asks the driver of a device that is to be opened to compile quickly, if it can. To be called while the program has
-    /// no second thread.
-    pub fn ask_for_quick(device: &DeviceInfo) {
-        if device.can_compile_quickly {
-            set_optimization(false);
         }
     }
 }

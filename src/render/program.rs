@@ -61,10 +61,8 @@ pub fn virtual_files(
     let mut constants = constants(scene, settings, count_steps, workgroup_bytes);
     constants.extend(guidance.constants());
     files.insert("features.wgsl".into(), features_wgsl(&constants));
-    let types = match settings.doublewords {
-        true => Some(library.read("types.wgsl")?),
-        false => None,
-    };
+    let types = settings.doublewords.then(|| library.read("types.wgsl"));
+    let types = types.transpose()?;
     files.insert("buffers.wgsl".into(), gpu_scene.buffers_wgsl(types));
     files.extend(table_files(library, scene)?);
     files.extend(accel_files(&scene.bvh));

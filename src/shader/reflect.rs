@@ -50,6 +50,11 @@ fn reflect(
     report: Reporter<'_>,
 ) -> Result<Option<Binding>, ShaderError> {
     let name = variable.name.clone().unwrap_or_default();
+    let refused = |message: String| {
+        let place = module.global_variables.get_span(handle).to_range();
+        let diagnostic = report.at(message, place.unwrap_or(0..0));
+        ShaderError::Validation(Box::new(diagnostic))
+    };
     let kind = match variable.space {
         AddressSpace::Private | AddressSpace::WorkGroup | AddressSpace::Function => {
             return Ok(None);
@@ -61,19 +66,13 @@ fn reflect(
         AddressSpace::Storage { .. } => BindingKind::StorageRead,
         _ => {
             let message = format!("`{name}`: only storage and uniform buffers can be bound");
-            let place = module.global_variables.get_span(handle).to_range();
-            let diagnostic = report.at(message, place.unwrap_or(0..0));
-            return Err(ShaderError::Validation(Box::new(diagnostic)));
+            return Err(refused(message));
         }
     };
     if let Some(at) = variable.binding.filter(|at| at.group != 0) {
-        let message = format!(
-            "`{name}` is in group {}: all bindings are in group 0",
-            at.group
-        );
-        let place = module.global_variables.get_span(handle).to_range();
-        let diagnostic = report.at(message, place.unwrap_or(0..0));
-        return Err(ShaderError::Validation(Box::new(diagnostic)));
+        let group = at.group;
+        let message = format!("`{name}` is in group {group}: all bindings are in group 0");
+        return Err(refused(message));
     }
     Ok(variable.binding.map(|at| Binding {
         group: at.group,

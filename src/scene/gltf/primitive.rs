@@ -267,8 +267,11 @@ impl<'a> Primitive<'a> {
         )))
     }
 
-    /// Triangles of a Draco stream fit its own attributes, but not always others that the primitive has.
+    /// Triangles of a Draco stream fit its own attributes, which was checked as it was read, but not always positions beside it.
     fn check_decoded(&self, triangles: &[[u32; 3]], vertices: usize) -> Result<(), LoadError> {
+        if self.decoded.attribute("POSITION").is_some() {
+            return Ok(());
+        }
         let indices = triangles.as_flattened();
         let Some(wrong) = indices.iter().find(|&&index| index as usize >= vertices) else {
             return Ok(());
