@@ -1,8 +1,10 @@
-// Buffers of fixed size. The large ones, which may be split over pages, are in the generated
-// buffers.wgsl and read through load_element, load_index, load_vertex_pair,
-// load_texel_word, load_environment_texel, load_environment_cdf and load_light_node; there is the film, too (binding 2), behind
-// load_pixel and store_pixel. Of a material each
-// field has a function in the generated material_table.wgsl, fn material_FIELD(i: u32); a texture is texture_at(i).
+// Buffers that every kernel has as they are. Those that a device may read faster in pieces of more than a word, or that
+// may be split over pages, are in the generated buffers.wgsl, behind accessors: the film's load_pixel and store_pixel
+// (binding 2); load_element, load_index, load_vertex_pair, load_texel_word, load_environment_texel, load_environment_cdf,
+// load_light_node; and of tables load_light, load_punctual_light, load_srgb_to_linear (linear value of an 8-bit sRGB code),
+// load_bsdf_number (albedos of lobes, bsdf/albedo.wgsl, and wavelengths, medium.wgsl) and load_guide_word (guide.wgsl). Of a
+// material each field has a function in the generated material_table.wgsl, fn material_FIELD(i: u32); a texture is
+// texture_at(i), one of the lights light_at(i), where these are few.
 
 #include "types.wgsl"
 #include "features.wgsl"
@@ -12,15 +14,8 @@
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> dispatch: Dispatch;
 @group(0) @binding(3) var<storage, read_write> status: Status;
-@group(0) @binding(4) var<storage, read> materials: array<Material>;
-@group(0) @binding(5) var<storage, read> textures: array<Texture>;
-@group(0) @binding(6) var<storage, read> lights: array<Light>;
-@group(0) @binding(7) var<storage, read> punctual_lights: array<PunctualLight>;
-// Linear value of each 8-bit sRGB code.
-@group(0) @binding(8) var<storage, read> srgb_to_linear: array<f32>;
-// Albedos of lobes (bsdf/albedo.wgsl) and wavelengths (medium.wgsl).
-@group(0) @binding(10) var<storage, read> bsdf_tables: array<f32>;
 @group(0) @binding(9) var<storage, read_write> element_counts: ElementCounts;
-// What guides paths, and what paths leave for that (guide.wgsl).
-@group(0) @binding(11) var<storage, read> guide: array<u32>;
+// The beginning of what load_guide_word reads, for words that are the same for all lanes.
+@group(0) @binding(16) var<storage, read> guide_header: array<u32>;
+// What paths leave for a guide (guide.wgsl).
 @group(0) @binding(12) var<storage, read_write> path_records: array<PathRecord>;

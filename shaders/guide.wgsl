@@ -58,12 +58,12 @@ fn guide_at(position: vec3f, frame: ShadingFrame) -> Guide {
     let face = guide_face(frame.z);
     var density = 0u;
     if (HAS_GUIDE) {
-        let lower = vec3f(bitcast<f32>(guide[0]), bitcast<f32>(guide[1]), bitcast<f32>(guide[2]));
-        let per_metre = vec3f(bitcast<f32>(guide[3]), bitcast<f32>(guide[4]), bitcast<f32>(guide[5]));
+        let lower = vec3f(bitcast<f32>(guide_header[0]), bitcast<f32>(guide_header[1]), bitcast<f32>(guide_header[2]));
+        let per_metre = vec3f(bitcast<f32>(guide_header[3]), bitcast<f32>(guide_header[4]), bitcast<f32>(guide_header[5]));
         let place = clamp((position - lower) * per_metre, vec3f(0.0), vec3f(f32(GUIDE_CELLS) - 0.5));
         let cell = vec3u(floor_to_u32(place.x), floor_to_u32(place.y), floor_to_u32(place.z));
         let index = ((cell.z * GUIDE_CELLS + cell.y) * GUIDE_CELLS + cell.x) * 6u + face;
-        density = guide[GUIDE_HEADER + index];
+        density = load_guide_word(GUIDE_HEADER + index);
     }
     return Guide(density, guide_turn(face, frame));
 }
@@ -80,9 +80,9 @@ fn guided_point(g: Guide, u: vec2f) -> GuidedPoint {
         return GuidedPoint(u, 1.0);
     }
     var point = GuidedPoint(u, 1.0);
-    let first = guide_split(&point, guide[g.density]);
-    let second = guide_split(&point, guide[g.density + 1u + first]);
-    let third = guide_split(&point, guide[g.density + 5u + 4u * first + second]);
+    let first = guide_split(&point, load_guide_word(g.density));
+    let second = guide_split(&point, load_guide_word(g.density + 1u + first));
+    let third = guide_split(&point, load_guide_word(g.density + 5u + 4u * first + second));
     let column = 4u * (first & 1u) + 2u * (second & 1u) + (third & 1u);
     let row = 2u * (first & 2u) + (second & 2u) + (third >> 1u);
     point.u = min((vec2f(f32(column), f32(row)) + point.u) * 0.125, vec2f(ONE_BELOW));

@@ -47,7 +47,7 @@ fn sample_light(s: Surface, both_sides: bool, sampler: ptr<function, Sampler>) -
         if (choice.light == NONE) {
             return no_light_sample();
         }
-        var light = lights[choice.light];
+        var light = load_light(choice.light);
         light.probability = choice.probability;
         return sample_chosen_light(s, both_sides, light, sampler);
     }

@@ -131,8 +131,8 @@ fn sample_wavelength(u: f32, wavelength: ptr<function, f32>) -> vec3f {
     let x = u * f32(SPECTRUM_BINS);
     let bin = min(floor_to_u32(x), SPECTRUM_BINS - 1u);
     let first = SPECTRUM_TABLE + 4u * bin;
-    *wavelength = mix(bsdf_tables[first], bsdf_tables[first + 4u], x - f32(bin));
-    return vec3f(bsdf_tables[first + 1u], bsdf_tables[first + 2u], bsdf_tables[first + 3u]);
+    *wavelength = mix(load_bsdf_number(first), load_bsdf_number(first + 4u), x - f32(bin));
+    return vec3f(load_bsdf_number(first + 1u), load_bsdf_number(first + 2u), load_bsdf_number(first + 3u));
 }
 
 // Whether the index of the media at a surface depends on the wavelength.

@@ -333,6 +333,6 @@ fn environment_hit_weight(pdf: f32, last: LastBounce) -> f32 {
     if (!BSDF_SAMPLES) {
         return 0.0;
     }
-    let choice = lights[frame.environment_light].probability;
+    let choice = load_light(frame.environment_light).probability;
     return power_heuristic(last.pdf, last.environment_samples * choice * pdf);
 }

@@ -58,9 +58,9 @@ fn load_texel(info: Texture, at: vec2u) -> vec4f {
         return unpack4x8unorm(word);
     }
     return vec4f(
-        srgb_to_linear[word & 255u],
-        srgb_to_linear[(word >> 8u) & 255u],
-        srgb_to_linear[(word >> 16u) & 255u],
+        load_srgb_to_linear(word & 255u),
+        load_srgb_to_linear((word >> 8u) & 255u),
+        load_srgb_to_linear((word >> 16u) & 255u),
         f32(word >> 24u) * (1.0 / 255.0),
     );
 }

@@ -186,6 +186,9 @@ fn a_kernel_that_is_compiled_quickly_draws_the_same_picture() {
     };
     let (full, report) = draw("full");
     assert_eq!(report["optimization"], "full");
+    for loads in ["doublewords", "texels"] {
+        assert!(report["loads"][loads].is_boolean(), "{loads}");
+    }
     for optimization in ["auto", "quick"] {
         let (picture, report) = draw(optimization);
         assert_eq!(report["optimization"], if can { "quick" } else { "full" });

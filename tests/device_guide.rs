@@ -55,7 +55,7 @@ fn samples_follow_the_learnt_density() {
             [i as u32, 0, 0],
             &inputs,
             outputs,
-            &[(GUIDE, &guide)],
+            &[(GUIDE, &guide), (GUIDE_HEADER, &guide)],
         );
         let density = densities[table.density_at(lesson)];
         let square = |u: [f32; 2]| (8.0 * u[0]) as usize + 8 * (8.0 * u[1]) as usize;
@@ -126,7 +126,13 @@ fn every_place_finds_the_density_of_its_cell() {
     let inputs: Vec<[f32; 4]> = places.flatten().collect();
     let kernel = Setup::new().on(&["HAS_GUIDE"]).kernel("guide", "place");
     let n = some.len();
-    let found: Vec<[f32; 4]> = kernel.run(n as u32, [0; 3], &inputs, 2 * n, &[(GUIDE, &guide)]);
+    let found: Vec<[f32; 4]> = kernel.run(
+        n as u32,
+        [0; 3],
+        &inputs,
+        2 * n,
+        &[(GUIDE, &guide), (GUIDE_HEADER, &guide)],
+    );
     let first = table.words().len() - 21 * table.densities().len();
     for (lesson, pair) in some.iter().zip(found.chunks_exact(2)) {
         assert_eq!(pair[0][1] as u32, lesson.face);

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use device_common::scenes::{add_mesh, emitter, empty_scene};
-use etendue::gpu::{Device, OpenOptions};
+use etendue::gpu::{Device, Loads, OpenOptions};
 use etendue::render::{GpuScene, Prepared, Renderer, Settings};
 use etendue::scene::{Environment, EnvironmentImage, Material, Scene};
 use etendue::shader::ShaderLibrary;
@@ -70,6 +70,11 @@ fn a_render_under_the_validation_layer_is_clean() {
             spp: 4,
             checked,
             stats: true,
+            loads: if staging {
+                Loads::default()
+            } else {
+                Loads::possible(device.info())
+            },
             ..Settings::default()
         };
         let library = ShaderLibrary::embedded();

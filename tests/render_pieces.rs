@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use etendue::accel::BuildOptions;
-use etendue::gpu::Device;
+use etendue::gpu::{Device, Loads};
 use etendue::render::{Film, GpuScene, Prepared, Renderer, Settings};
 use etendue::scene::{Environment, EnvironmentImage, gltf};
 use etendue::shader::ShaderLibrary;
@@ -102,16 +102,14 @@ fn the_picture_does_not_depend_on_the_pixels_of_a_lane() {
     }
 }
 
-/// Arrays and film are read in double words where a device is faster so.
+/// Arrays and film are read in double words or as texels where a device is faster so.
 #[test]
-fn the_picture_does_not_depend_on_the_width_of_reads() {
+fn the_picture_does_not_depend_on_what_is_read_at_once() {
     let device = Device::open(None).expect("a Vulkan device");
-    if !device.info().int64 {
-        return;
-    }
+    let possible = Loads::possible(device.info());
     let library = ShaderLibrary::embedded();
-    // A tree, textures and many lamps; a list; and an environment.
-    for name in ["many_lights", "foliage", "cornell_box"] {
+    // A tree, textures and many lamps; a list; many materials; and an environment.
+    for name in ["many_lights", "foliage", "cornell_box", "sphere_grid"] {
         let path = format!("scenes/{name}.gltf");
         let mut scene = gltf::load(path.as_ref(), &Default::default()).expect("a scene");
         if name == "foliage" {
@@ -119,13 +117,16 @@ fn the_picture_does_not_depend_on_the_width_of_reads() {
         }
         let prepared = Prepared::new(&scene, 0, &BuildOptions::default()).expect("a flat scene");
         let gpu_scene = GpuScene::upload(&device, &prepared).expect("memory");
-        let render = |doublewords| {
+        let render = |doublewords, texels| {
             let settings = Settings {
                 width: 45,
                 height: 27,
                 spp: 3,
                 stats: true,
-                doublewords,
+                loads: Loads {
+                    doublewords,
+                    texels,
+                },
                 ..Settings::default()
             };
             let renderer =
@@ -133,11 +134,18 @@ fn the_picture_does_not_depend_on_the_width_of_reads() {
             let mut renderer = renderer.expect("a kernel");
             let flow = renderer.render(&mut |_, _| ControlFlow::Continue(()));
             assert!(flow.expect("a render").is_continue());
-            let declares = renderer.wgsl().contains("film: array<u64>");
-            assert_eq!(declares, doublewords, "{name}");
-            renderer.film().expect("a film")
+            let declares = |text| renderer.wgsl().contains(text);
+            assert_eq!(declares("film: array<u64>"), doublewords, "{name}");
+            assert_eq!(declares("texture_storage_1d"), texels, "{name}");
+            bits(&renderer.film().expect("a film")).to_vec()
         };
-        assert_eq!(bits(&render(true)), bits(&render(false)), "{name}");
+        let words = render(false, false);
+        if possible.doublewords {
+            assert_eq!(render(true, false), words, "{name}");
+        }
+        if possible.texels {
+            assert_eq!(render(false, true), words, "{name}");
+        }
     }
 }
 

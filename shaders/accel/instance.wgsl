@@ -56,7 +56,7 @@ struct InstanceHit {
 // Finds the instance of a hit by its number.
 fn instance_hit(id: u32) -> InstanceHit {
   // The element after the root: where the records are, how many, and the first of all their numbers.
-  let header = load_element(1u);
+  let header = load_element_uniform(1u);
   let number = id >> 1u;
   if (number < header.a.z) {
     return InstanceHit(false, number, header);

@@ -160,7 +160,7 @@ fn closest_of_listed(setup: RaySetup, ray: Ray, camera_ray: bool, seed: u32, pai
     if (count_step()) {
       break;
     }
-    let other = load_element(i);
+    let other = load_element_uniform(i);
     let closer = closer_of_listed(hit, other, i, setup, ray, camera_ray, seed);
     if (closer.triangle != hit.triangle) {
       *pair = other;
@@ -222,7 +222,7 @@ fn any_of_listed(setup: RaySetup, ray: Ray, seed: u32) -> bool {
       break;
     }
     if (COUNT_RAYS) { count_element(false); }
-    let pair = load_element(i);
+    let pair = load_element_uniform(i);
     let fan = pair_fan(pair, setup);
     hit = any_of_pair(2u * i, pair.d.y, pair.d.z, ray, seed, fan.a, fan.b, fan.c, fan.d);
   }

@@ -20,9 +20,9 @@ fn albedo_at(first: u32, cos_theta: f32, roughness: f32) -> f32 {
     let row = min(floor_to_u32(y), ALBEDO_ROUGHNESSES - 2u);
     let fx = x - f32(column);
     let at = first + row * ALBEDO_COSINES + column;
-    let low = mix(bsdf_tables[at], bsdf_tables[at + 1u], fx);
+    let low = mix(load_bsdf_number(at), load_bsdf_number(at + 1u), fx);
     let next = at + ALBEDO_COSINES;
-    let high = mix(bsdf_tables[next], bsdf_tables[next + 1u], fx);
+    let high = mix(load_bsdf_number(next), load_bsdf_number(next + 1u), fx);
     return mix(low, high, y - f32(row));
 }
 
@@ -54,6 +54,6 @@ fn stretched_plane(low: vec4u, along: u32, f: vec4f) -> f32 {
 
 fn stretched_rows(at: u32, f: vec4f) -> f32 {
     let next = at + STRETCHED_SIZES.x;
-    let low = mix(bsdf_tables[at], bsdf_tables[at + 1u], f.x);
-    return mix(low, mix(bsdf_tables[next], bsdf_tables[next + 1u], f.x), f.y);
+    let low = mix(load_bsdf_number(at), load_bsdf_number(at + 1u), f.x);
+    return mix(low, mix(load_bsdf_number(next), load_bsdf_number(next + 1u), f.x), f.y);
 }

@@ -1,7 +1,7 @@
 // KHR_lights_punctual: point, spot and directional lights.
 
 fn punctual_sample(s: Surface, index: u32) -> LightSample {
-    let light = punctual_lights[index];
+    let light = load_punctual_light(index);
     var sample = no_light_sample();
     sample.pdf = 1.0;
     sample.delta = true;

@@ -151,10 +151,10 @@ fn choose_light_in_tree(receiver: LightReceiver, bits: vec2u) -> LightChoice {
 // One of the lights that are nowhere, by their alias table.
 fn choose_light_outside(head: LightNode, number: u32, more: u32) -> LightChoice {
     var index = head.link + multiply_high(number, head.axis);
-    if (unit_float(mix32(more)) >= lights[index].threshold) {
-        index = lights[index].alias_index;
+    if (unit_float(mix32(more)) >= load_light(index).threshold) {
+        index = load_light(index).alias_index;
     }
-    return LightChoice(index, lights[index].probability);
+    return LightChoice(index, load_light(index).probability);
 }
 
 // The probability with which choose_light_in_tree chooses a light of the tree.
@@ -163,7 +163,7 @@ fn light_tree_probability(light: u32, receiver: LightReceiver) -> f32 {
     if (HAS_LIGHTS_OUTSIDE_TREE) {
         probability = f32(load_light_node(1u).extent) * 2.3283064365386963e-10;
     }
-    var trail = lights[light].alias_index;
+    var trail = load_light(light).alias_index;
     var link = load_light_node(0u).link;
     loop {
         if (count_step() || (link & LIGHT_NODE_LEAF) != 0u || probability == 0.0) {

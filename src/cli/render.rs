@@ -48,7 +48,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
 
     // From files to buffers and a kernel on the device.
     let ((mut scene, mut settings), device) = load_and_open(args, found, &mut time, &mut warnings)?;
-    settings.doublewords = stage("probe", || device.prefers_doublewords(library.cache()))?;
+    settings.loads = stage("probe", || device.quickest_loads(library.cache()))?;
     let options = BuildOptions {
         instancing: args.instancing,
         ..BuildOptions::of(args.bvh)

@@ -11,7 +11,7 @@ use super::lights_report::LightsReport;
 use super::load;
 use super::message::Warnings;
 use super::optimization::Optimization;
-use crate::gpu::DeviceInfo;
+use crate::gpu::{DeviceInfo, Loads};
 use crate::host::stages::{Startup, startup};
 use crate::render::{Film, Progress, Settings};
 use crate::scene::Scene;
@@ -41,6 +41,8 @@ pub struct Report {
     pub driver: String,
     /// How much it optimizes kernels: `quick` or `full`.
     pub optimization: &'static str,
+    /// What kernels read memory in where not in words, as a measurement has it.
+    pub loads: Loads,
     /// Columns.
     pub width: u32,
     /// Rows.
@@ -183,6 +185,7 @@ impl Report {
             device: device.name.clone(),
             driver: device.driver.clone(),
             optimization: Optimization::of(device).name(),
+            loads: settings.loads,
             width: settings.width,
             height: settings.height,
             seed: settings.seed,

@@ -7,6 +7,7 @@ use ash::vk;
 use super::error::{GpuError, check_limit};
 use super::memory::{Buffer, RawBuffer};
 use super::pipeline::{BindingKind, Layout, Pipeline};
+use super::texel_buffers::TexelView;
 
 /// A binding number, its buffer, and the range (offset, bytes) of it that the shader sees; `None` is the whole.
 pub type Bound<'a> = (u32, &'a Buffer, Option<(u64, u64)>);
@@ -16,6 +17,7 @@ pub struct BindGroup {
     pub(super) layout: Arc<Layout>,
     pub(super) set: vk::DescriptorSet,
     pool: vk::DescriptorPool,
+    views: Vec<TexelView>,
     _buffers: Vec<Arc<RawBuffer>>,
 }
 
@@ -28,6 +30,7 @@ impl BindGroup {
             layout: Arc::clone(&pipeline.layout),
             set: vk::DescriptorSet::null(),
             pool: vk::DescriptorPool::null(),
+            views: Vec::new(),
             _buffers: buffers
                 .iter()
                 .map(|(_, buffer, _)| Arc::clone(&buffer.0))
@@ -65,7 +68,7 @@ impl BindGroup {
         Ok(())
     }
 
-    fn write(&self, label: &str, &(number, buffer, range): &Bound<'_>) -> Result<(), GpuError> {
+    fn write(&mut self, label: &str, &(number, buffer, range): &Bound<'_>) -> Result<(), GpuError> {
         let kind = self
             .layout
             .bindings
@@ -81,13 +84,22 @@ impl BindGroup {
             offset,
             range: bytes,
         }];
+        let mut views = [vk::BufferView::null()];
         let write = vk::WriteDescriptorSet::default()
             .dst_set(self.set)
             .dst_binding(number)
-            .descriptor_type(kind.descriptor())
-            .buffer_info(&info);
+            .descriptor_type(kind.descriptor());
+        let write = match kind {
+            BindingKind::Texels { words } => {
+                let view = TexelView::new(&self.layout.logical, buffer, (offset, bytes), words)?;
+                views[0] = view.raw;
+                self.views.push(view);
+                write.texel_buffer_view(&views)
+            }
+            BindingKind::Storage | BindingKind::Uniform => write.buffer_info(&info),
+        };
         // SAFETY: the set is not in use yet, the binding exists with this type, the range lies inside the
-        // buffer and within the limits, and the group holds the buffer alive.
+        // buffer and within the limits, and the group holds the buffer and its view alive.
         unsafe {
             self.layout
                 .logical
@@ -120,6 +132,11 @@ impl BindGroup {
                 "bytes in one uniform binding (maxUniformBufferRange)",
                 info.max_uniform_buffer_range,
                 info.uniform_offset_alignment,
+            ),
+            BindingKind::Texels { words } => (
+                "bytes in one texel buffer (maxTexelBufferElements)",
+                4 * u64::from(words) * info.max_texels,
+                info.texel_offset_alignment,
             ),
         };
         check_limit(buffer.label(), what, bytes, limit)?;

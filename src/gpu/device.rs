@@ -14,6 +14,7 @@ use super::logical::Logical;
 use super::memory::{Buffer, Purpose, RawBuffer};
 use super::options::OpenOptions;
 use super::pipeline::{BindingKind, Pipeline};
+use super::probe::loads::Loads;
 use super::probe::{self, Probe};
 use super::queue::{Queue, Timing};
 use super::select::select;
@@ -129,13 +130,12 @@ impl Device {
         Ok(*self.logical.probe.get_or_init(|| measured))
     }
 
-    /// Whether its shaders read scattered memory faster in 64-bit integers than in words: measured, and
-    /// kept in `cache` for the next time.
+    /// How its shaders read scattered memory fastest: measured, and kept in `cache` for the next time.
     ///
     /// # Errors
     /// Any of the calls for the measurement.
-    pub fn prefers_doublewords(&self, cache: &Cache) -> Result<bool, GpuError> {
-        probe::loads::prefers_doublewords(self, cache)
+    pub fn quickest_loads(&self, cache: &Cache) -> Result<Loads, GpuError> {
+        probe::loads::quickest(self, cache)
     }
 
     /// Makes a buffer of `bytes` bytes (16 for 0), filled with zeros.

@@ -50,6 +50,12 @@ pub struct DeviceInfo {
     pub max_storage_buffer_range: u64,
     /// Bytes that one uniform binding may reach.
     pub max_uniform_buffer_range: u64,
+    /// Texels that one texel buffer may have.
+    pub max_texels: u64,
+    /// Texel buffers that a stage may bind; 0 where shaders may not have them with texels of two words.
+    pub max_texel_buffers: u32,
+    /// The offset of a texel buffer is a multiple of this, in bytes.
+    pub texel_offset_alignment: u64,
     /// Storage buffers that a stage may bind.
     pub max_buffers: u32,
     /// Uniform buffers that a stage may bind.
@@ -116,6 +122,9 @@ impl DeviceInfo {
         info.memory = largest_local_heap(&memory);
         info.int64 = features.shader_int64 == vk::TRUE;
         info.float64 = features.shader_float64 == vk::TRUE;
+        if features.shader_storage_image_extended_formats == vk::FALSE {
+            info.max_texel_buffers = 0;
+        }
         info.timestamp_bits = bits;
         Ok(Some(info))
     }
@@ -141,6 +150,11 @@ impl DeviceInfo {
             max_buffer_size: extended.max_buffer_size,
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range),
             max_uniform_buffer_range: u64::from(limits.max_uniform_buffer_range),
+            max_texels: u64::from(limits.max_texel_buffer_elements),
+            max_texel_buffers: limits
+                .max_per_stage_descriptor_storage_images
+                .min(limits.max_descriptor_set_storage_images),
+            texel_offset_alignment: limits.min_texel_buffer_offset_alignment.max(1),
             max_buffers: limits
                 .max_per_stage_descriptor_storage_buffers
                 .min(limits.max_descriptor_set_storage_buffers),

@@ -93,7 +93,8 @@ fn create(
         .queue_priorities(&[1.0]);
     let features = vk::PhysicalDeviceFeatures::default()
         .shader_int64(info.int64)
-        .shader_float64(info.float64);
+        .shader_float64(info.float64)
+        .shader_storage_image_extended_formats(info.max_texel_buffers > 0);
     // The specification asks that this extension be enabled wherever it is present.
     let subset = ash::khr::portability_subset::NAME;
     let mut extensions = Vec::new();

@@ -97,6 +97,7 @@ impl RawBuffer {
             .size(self.padded())
             .usage(
                 Usage::STORAGE_BUFFER
+                    | Usage::STORAGE_TEXEL_BUFFER
                     | Usage::UNIFORM_BUFFER
                     | Usage::TRANSFER_SRC
                     | Usage::TRANSFER_DST,

@@ -34,6 +34,7 @@ mod pipeline;
 mod probe;
 mod queue;
 mod select;
+mod texel_buffers;
 mod transfer;
 mod validation;
 
@@ -48,5 +49,6 @@ pub use memory::Buffer;
 pub use options::OpenOptions;
 pub use pipeline::{BindingKind, Pipeline};
 pub use probe::Probe;
+pub use probe::loads::Loads;
 pub use queue::Timing;
 pub use validation::ValidationLog;

@@ -1,5 +1,6 @@
 //! Compute pipelines with one descriptor set of buffers.
 
+use std::borrow::Cow;
 use std::ffi::CString;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -8,6 +9,7 @@ use ash::vk;
 
 use super::error::{GpuError, check_limit};
 use super::logical::Logical;
+use super::texel_buffers::images_to_buffers;
 
 /// What a binding of descriptor set 0 is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +18,11 @@ pub enum BindingKind {
     Storage,
     /// A uniform buffer.
     Uniform,
+    /// A storage texel buffer that is only read, its texels of one, two or four 32-bit words.
+    Texels {
+        /// Words of a texel.
+        words: u8,
+    },
 }
 
 impl BindingKind {
@@ -23,7 +30,12 @@ impl BindingKind {
         match self {
             Self::Storage => vk::DescriptorType::STORAGE_BUFFER,
             Self::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
+            Self::Texels { .. } => vk::DescriptorType::STORAGE_TEXEL_BUFFER,
         }
+    }
+
+    fn is_texels(self) -> bool {
+        matches!(self, Self::Texels { .. })
     }
 }
 
@@ -73,7 +85,17 @@ impl Pipeline {
 
     fn create(&mut self, spirv: &[u32], entry: &std::ffi::CStr) -> Result<(), GpuError> {
         let device = &self.layout.logical.raw;
-        let info = vk::ShaderModuleCreateInfo::default().code(spirv);
+        let spirv = if self
+            .layout
+            .bindings
+            .iter()
+            .any(|(_, kind)| kind.is_texels())
+        {
+            Cow::Owned(images_to_buffers(spirv))
+        } else {
+            Cow::Borrowed(spirv)
+        };
+        let info = vk::ShaderModuleCreateInfo::default().code(&spirv);
         // SAFETY: the words come from naga, which emits valid SPIR-V of the validated shader.
         let module = unsafe { device.create_shader_module(&info, None) }
             .map_err(|e| GpuError::vulkan(format!("load the shader of '{}'", self.label), e))?;
@@ -225,5 +247,9 @@ fn check_bindings(
     check_limit(label, what, count(BindingKind::Storage), limit)?;
     let what = "uniform buffers (maxPerStageDescriptorUniformBuffers)";
     let limit = logical.info.max_uniform_buffers.into();
-    check_limit(label, what, count(BindingKind::Uniform), limit)
+    check_limit(label, what, count(BindingKind::Uniform), limit)?;
+    let texels = bindings.iter().filter(|(_, have)| have.is_texels()).count() as u64;
+    let what = "texel buffers (maxPerStageDescriptorStorageImages)";
+    let limit = logical.info.max_texel_buffers.into();
+    check_limit(label, what, texels, limit)
 }

@@ -2,9 +2,11 @@
 
 use super::error::RenderError;
 use super::layout::Light;
-use super::paged::{FIRST_PAGED_BINDING, PagedBuffer, film_wgsl};
+use super::paged::PagedBuffer;
 use super::prepared::Prepared;
 use super::program::device_elements;
+use super::reading::{FIRST_PAGED_BINDING, Reading};
+use super::short_tables::short_tables;
 use super::textures::srgb_table;
 use crate::gpu::{Buffer, Device, GpuError};
 
@@ -14,6 +16,10 @@ pub struct GpuScene {
     fixed: Vec<(u32, Buffer)>,
     /// Large arrays, in the order of their bindings.
     paged: Vec<PagedBuffer>,
+    /// Whether the acceleration structure is a list, which all lanes read at one place.
+    is_list: bool,
+    /// Names of tables of a few entries.
+    short_tables: Vec<&'static str>,
 }
 
 impl GpuScene {
@@ -38,31 +44,44 @@ impl GpuScene {
         Ok(Self {
             fixed: fixed_buffers(device, scene)?,
             paged,
+            is_list: scene.bvh.is_list(),
+            short_tables: short_tables(scene),
         })
     }
 
     /// Every buffer with its binding number.
     pub fn bindings(&self) -> Vec<(u32, &Buffer)> {
         let pages = self.paged.iter().flat_map(|p| p.pages());
+        let uniform = self.paged.iter().flat_map(|p| p.pages()).next();
         self.fixed
             .iter()
             .map(|(binding, buffer)| (*binding, buffer))
-            .chain((FIRST_PAGED_BINDING..).zip(pages))
+            .chain((FIRST_PAGED_BINDING..).zip(pages.chain(uniform)))
             .collect()
     }
 
-    /// The generated `buffers.wgsl`; where the text with the shader's structs, `types`, is given, it reads what has an even
-    /// number of words in 64-bit integers, which the device must have.
-    pub fn buffers_wgsl(&self, types: Option<&str>) -> String {
+    /// The generated `buffers.wgsl`.
+    pub fn buffers_wgsl(&self, reading: Reading<'_>) -> String {
         let mut binding = FIRST_PAGED_BINDING;
         let mut text = String::from(
             "// Generated: the film, and large arrays, split over pages where the device asks for it.\n",
-        ) + &film_wgsl(types);
-        for buffer in &self.paged {
-            text += &buffer.wgsl(binding, types);
+        ) + &reading.film()
+            + &reading.tables(&self.short_tables);
+        let of_elements = if self.is_list {
+            reading.without_texels()
+        } else {
+            reading
+        };
+        for (i, buffer) in self.paged.iter().enumerate() {
+            text += &buffer.wgsl(binding, if i == 0 { of_elements } else { reading });
             binding += buffer.pages().len() as u32;
         }
-        text
+        // The elements are the first, and have a second binding after all others.
+        let pages = self
+            .paged
+            .first()
+            .map_or(1, |elements| elements.pages().len());
+        text + &of_elements.uniform_elements(pages, binding)
     }
 
     /// Bytes of all data.

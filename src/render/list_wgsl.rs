@@ -139,7 +139,7 @@ impl Vertices {
                 let name = format!("v{i}_{corner}");
                 let _ = writeln!(
                     text,
-                    "    let {name} = exact_shear(setup, pair_vertices(load_element({i}u)).v{corner});"
+                    "    let {name} = exact_shear(setup, pair_vertices(load_element_uniform({i}u)).v{corner});"
                 );
                 name
             });

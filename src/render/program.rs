@@ -8,6 +8,7 @@ use super::guide::Guidance;
 use super::layout::layouts;
 use super::list_wgsl::DeviceList;
 use super::prepared::Prepared;
+use super::reading::Reading;
 use super::settings::Settings;
 use super::short_tables::table_files;
 use crate::accel::{Bvh, Element};
@@ -61,10 +62,12 @@ pub fn virtual_files(
     let mut constants = constants(scene, settings, count_steps, workgroup_bytes);
     constants.extend(guidance.constants());
     files.insert("features.wgsl".into(), features_wgsl(&constants));
-    let types = settings.doublewords.then(|| library.read("types.wgsl"));
-    let types = types.transpose()?;
-    files.insert("buffers.wgsl".into(), gpu_scene.buffers_wgsl(types));
-    files.extend(table_files(library, scene)?);
+    let reading = Reading {
+        types: library.read("types.wgsl")?,
+        loads: settings.loads,
+    };
+    files.insert("buffers.wgsl".into(), gpu_scene.buffers_wgsl(reading));
+    files.extend(table_files(scene, reading));
     files.extend(accel_files(&scene.bvh));
     Ok(files)
 }

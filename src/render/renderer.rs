@@ -323,6 +323,9 @@ impl<'a> Renderer<'a> {
 fn binding_kind(kind: shader::BindingKind) -> BindingKind {
     match kind {
         shader::BindingKind::Uniform => BindingKind::Uniform,
-        _ => BindingKind::Storage,
+        shader::BindingKind::StorageRead | shader::BindingKind::StorageReadWrite => {
+            BindingKind::Storage
+        }
+        shader::BindingKind::Texels { words } => BindingKind::Texels { words },
     }
 }

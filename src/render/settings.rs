@@ -1,6 +1,7 @@
 //! What to render, and how.
 
 use super::error::RenderError;
+use crate::gpu::Loads;
 
 /// Settings of one render. Together with the scene, the shaders, the device and the guidance, which follows from
 /// these ([`train`](super::train)), they decide every bit of the picture.
@@ -38,10 +39,9 @@ pub struct Settings {
     /// Samples a pixel in a pass over the picture, instead of as many as take about two seconds. No bit
     /// of the picture depends on it.
     pub pass_samples: Option<u64>,
-    /// Read the acceleration structure, the film and other large arrays in 64-bit integers, which the device must have
-    /// ([`Device::prefers_doublewords`](crate::gpu::Device::prefers_doublewords)). No bit of the picture
-    /// depends on it.
-    pub doublewords: bool,
+    /// How to read the acceleration structure, the film and other large arrays, where not in words; the device must have it
+    /// ([`Device::quickest_loads`](crate::gpu::Device::quickest_loads)). No bit of the picture depends on it.
+    pub loads: Loads,
 }
 
 impl Default for Settings {
@@ -62,7 +62,7 @@ impl Default for Settings {
             debug_names: false,
             piece_tiles: None,
             pass_samples: None,
-            doublewords: false,
+            loads: Loads::default(),
         }
     }
 }

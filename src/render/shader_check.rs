@@ -3,10 +3,10 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use super::error::RenderError;
-use super::paged::large_arrays_wgsl;
 use super::program::{
     self, Constant, ENTRY_FILE, feature_constants, features_wgsl, stack_constants,
 };
+use super::reading::large_arrays_wgsl;
 use super::settings::Settings;
 use super::short_tables::long_tables;
 use crate::accel::{BuildOptions, Bvh, MAX_DEPTH, Placement, TwoLevel};

@@ -5,8 +5,10 @@
 use std::fmt::Write;
 
 use super::layout::{LIGHT_KIND_SHIFT, LIGHT_TRIANGLE, Material};
+use super::material_fields::MaterialFields;
 use super::plain_fields::PlainFields;
 use super::prepared::Prepared;
+use super::reading::Reading;
 use super::wgsl_structs::fields_of;
 use crate::shader::{ShaderError, ShaderLibrary, VirtualFiles};
 
@@ -24,44 +26,59 @@ struct Known<'a> {
     lights: usize,
 }
 
+/// Names of the scene's tables of a few entries.
+pub(super) fn short_tables(scene: &Prepared) -> Vec<&'static str> {
+    let counts = [
+        ("materials", scene.materials.len()),
+        ("textures", scene.textures.textures.len()),
+        ("lights", scene.lights.table.len()),
+    ];
+    let short = counts.into_iter().filter(|(_, count)| is_short(*count));
+    short.map(|(name, _)| name).collect()
+}
+
+fn is_short(count: usize) -> bool {
+    (1..=SHORT).contains(&count)
+}
+
 /// The generated files by which a scene's lights, materials and textures are read.
-///
-/// # Errors
-/// `types.wgsl` of the library, where the fields of structs are, cannot be read.
-pub fn table_files(library: &ShaderLibrary, scene: &Prepared) -> Result<VirtualFiles, ShaderError> {
+pub fn table_files(scene: &Prepared, reading: Reading<'_>) -> VirtualFiles {
     let known = Known {
         materials: &scene.materials,
         textures: scene.textures.textures.len(),
         lights: scene.lights.table.len(),
     };
-    files(library, &known, &short_pairs(scene))
+    files(&known, &short_pairs(scene), reading)
 }
 
 /// The same for a scene that is not known: no table is short.
 ///
 /// # Errors
-/// As [`table_files`].
+/// `types.wgsl` of the library, where the fields of structs are, cannot be read.
 pub fn long_tables(library: &ShaderLibrary) -> Result<VirtualFiles, ShaderError> {
-    files(library, &Known::default(), &[])
+    let reading = Reading {
+        types: library.read("types.wgsl")?,
+        ..Reading::default()
+    };
+    Ok(files(&Known::default(), &[], reading))
 }
 
 /// `material_table.wgsl`, for each field of a material `fn material_FIELD(i: u32)`, and `fn texture_at(i: u32) -> Texture`;
 /// `light_table.wgsl`, `fn light_at(i: u32) -> Light`, and `fn light_pair(id: u32) -> Element`, which gives the element of
 /// an emissive triangle's pair, one of those of the lights `firsts`, if there are such.
-fn files(
-    library: &ShaderLibrary,
-    known: &Known<'_>,
-    firsts: &[usize],
-) -> Result<VirtualFiles, ShaderError> {
-    let types = library.read("types.wgsl")?;
+fn files(known: &Known<'_>, firsts: &[usize], reading: Reading<'_>) -> VirtualFiles {
+    let types = reading.types;
     let table = |name: &str, kind: &str, count: usize, entry: &dyn Fn(&str) -> String| {
         let body = table_access(types, kind, count, entry);
         format!("fn {name}(i: u32) -> {kind} {{\n{body}}}\n")
     };
     let plain = PlainFields::new(types, known.materials);
+    let fields = MaterialFields::new(reading, is_short(known.materials.len()));
     let material = |(field, kind): &(&str, &str)| {
-        let entry = |i: &str| format!("materials[{i}].{field}");
-        let read = |name: &str| table(name, kind, known.materials.len(), &entry);
+        let entry = |i: &str| fields.entry(field, i);
+        let read = |name: &str| {
+            fields.accessor(field, kind) + &table(name, kind, known.materials.len(), &entry)
+        };
         let Some(value) = plain.value(field, kind, &format!("read_{field}(i)")) else {
             return read(&format!("material_{field}"));
         };
@@ -70,22 +87,25 @@ fn files(
             + &format!("fn material_{field}(i: u32) -> {kind} {{\n    return {value};\n}}\n")
     };
     let materials: String = fields_of(types, "Material").iter().map(material).collect();
-    let texture = |i: &str| format!("textures[{i}]");
+    let texture = |i: &str| format!("load_texture({i})");
     let textures = table("texture_at", "Texture", known.textures, &texture);
-    let light = |i: &str| format!("lights[{i}]");
+    let light = |i: &str| format!("load_light({i})");
     let lights = table("light_at", "Light", known.lights, &light);
-    Ok(VirtualFiles::from([
+    VirtualFiles::from([
         (
             "light_table.wgsl".into(),
             lights + &light_pair(types, firsts),
         ),
-        ("material_table.wgsl".into(), materials + &textures),
-    ]))
+        (
+            "material_table.wgsl".into(),
+            fields.declaration() + &materials + &textures,
+        ),
+    ])
 }
 
 /// The body of a function that gives the entry `i`, of a type, of a table with so many entries.
 fn table_access(types: &str, kind: &str, count: usize, entry: impl Fn(&str) -> String) -> String {
-    if !(1..=SHORT).contains(&count) {
+    if !is_short(count) {
         return format!("    return {};\n", entry("i"));
     }
     let at = |i: usize| entry(&format!("{i}u"));
@@ -129,10 +149,10 @@ fn light_pair(types: &str, firsts: &[usize]) -> String {
     for (k, i) in firsts.iter().enumerate() {
         let _ = writeln!(
             text,
-            "    let pair{k} = (lights[{i}].kind_and_index & LIGHT_INDEX_MASK) >> 1u;"
+            "    let pair{k} = (load_light({i}u).kind_and_index & LIGHT_INDEX_MASK) >> 1u;"
         );
     }
-    let entry = |k: usize| format!("load_element(pair{k})");
+    let entry = |k: usize| format!("load_element_uniform(pair{k})");
     let is_it = |k: usize| format!("id >> 1u == pair{k}");
     text + &selection(firsts.len(), &parts_of(types, "Element"), entry, is_it) + "}\n"
 }

@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use naga::{AddressSpace, GlobalVariable, Handle, Module, StorageAccess, Type, TypeInner};
+use naga::{
+    AddressSpace, GlobalVariable, Handle, ImageClass, ImageDimension, Module, StorageAccess,
+    StorageFormat, Type, TypeInner,
+};
 
 use super::ShaderError;
 use super::naga_report::Reporter;
@@ -31,6 +34,11 @@ pub enum BindingKind {
     StorageReadWrite,
     /// A uniform buffer.
     Uniform,
+    /// A texel buffer: in the shader a storage texture of one dimension, read-only, with texels of so many 32-bit words.
+    Texels {
+        /// 1, 2 or 4.
+        words: u8,
+    },
 }
 
 /// The bindings of a module reduced to one entry point, sorted by group and binding.
@@ -64,10 +72,16 @@ fn reflect(
             BindingKind::StorageReadWrite
         }
         AddressSpace::Storage { .. } => BindingKind::StorageRead,
-        _ => {
-            let message = format!("`{name}`: only storage and uniform buffers can be bound");
-            return Err(refused(message));
-        }
+        _ => match texel_words(&module.types[variable.ty].inner) {
+            Some(words) => BindingKind::Texels { words },
+            None => {
+                let message = format!(
+                    "`{name}`: only storage and uniform buffers can be bound, and texels of unsigned integers \
+                     (texture_storage_1d<rgba32uint, read>, rg32uint or r32uint)"
+                );
+                return Err(refused(message));
+            }
+        },
     };
     if let Some(at) = variable.binding.filter(|at| at.group != 0) {
         let group = at.group;
@@ -81,6 +95,27 @@ fn reflect(
         kind,
         element: element(module, variable.ty),
     }))
+}
+
+/// Words of a texel of what is bound as a texel buffer; none if the type is another.
+fn texel_words(inner: &TypeInner) -> Option<u8> {
+    let TypeInner::Image {
+        dim: ImageDimension::D1,
+        arrayed: false,
+        class: ImageClass::Storage { format, access },
+    } = inner
+    else {
+        return None;
+    };
+    if *access != StorageAccess::LOAD {
+        return None;
+    }
+    match format {
+        StorageFormat::R32Uint => Some(1),
+        StorageFormat::Rg32Uint => Some(2),
+        StorageFormat::Rgba32Uint => Some(4),
+        _ => None,
+    }
 }
 
 fn element(module: &Module, ty: Handle<Type>) -> Option<String> {

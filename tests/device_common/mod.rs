@@ -22,7 +22,7 @@ use etendue::render::layout::layouts;
 use etendue::render::program::{
     Constant, accel_files, feature_constants, features_wgsl, stack_constants,
 };
-use etendue::render::{Prepared, large_arrays_wgsl, long_tables, table_files};
+use etendue::render::{Prepared, Reading, large_arrays_wgsl, long_tables, table_files};
 use etendue::scene::Features;
 use etendue::shader::{
     self, CompileOptions, ShaderLibrary, VirtualFiles, compile as compile_shader, compose,
@@ -136,8 +136,12 @@ impl Setup {
 
     /// With the tables of a scene.
     pub fn tables(mut self, scene: &Prepared) -> Self {
-        let files = table_files(&ShaderLibrary::embedded(), scene);
-        self.accel.extend(files.expect("a library"));
+        let library = ShaderLibrary::embedded();
+        let reading = Reading {
+            types: library.read("types.wgsl").expect("a library"),
+            ..Reading::default()
+        };
+        self.accel.extend(table_files(scene, reading));
         self
     }
 
@@ -194,8 +198,9 @@ pub const TEXTURES: u32 = 5;
 pub const SRGB_TABLE: u32 = 8;
 pub const BSDF_TABLES: u32 = 10;
 pub const GUIDE: u32 = 11;
-pub const ELEMENTS: u32 = 16;
-pub const TEXEL_WORDS: u32 = 19;
+pub const GUIDE_HEADER: u32 = 16;
+pub const ELEMENTS: u32 = 17;
+pub const TEXEL_WORDS: u32 = 20;
 
 const PARAMS: u32 = 13;
 const INPUTS: u32 = 14;

@@ -12,6 +12,6 @@
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < params.x) {
-        outputs[id.x] = filter_texture(textures[params.y], inputs[id.x]);
+        outputs[id.x] = filter_texture(load_texture(params.y), inputs[id.x]);
     }
 }

@@ -11,7 +11,8 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use etendue::accel::BuildOptions;
-use etendue::gpu::Device;
+use etendue::gpu::{Device, Loads};
+use etendue::host::Cache;
 use etendue::render::{
     Film, GpuScene, Guidance, Guiding, LightSelection, Prepared, Settings, Stage, train,
 };
@@ -80,7 +81,7 @@ fn on_prepared_stage<T>(
 pub fn render_guided(scene: &Scene, settings: &Settings) -> Film {
     on_stage(scene, settings, |stage| {
         let training =
-            train(stage, settings, Guiding::On, &mut |_, _| {}).expect("a training pass");
+            train(stage, &as_used(settings), Guiding::On, &mut |_, _| {}).expect("a training pass");
         let training = training.expect("a training pass");
         assert!(training.guide.is_some());
         draw(stage, settings, training.guidance())
@@ -96,7 +97,18 @@ pub fn render_with_roulette(scene: &Scene, settings: &Settings, threshold: f32) 
     on_stage(scene, settings, |stage| draw(stage, settings, guidance))
 }
 
+/// The settings with what the program would choose for the device.
+fn as_used(settings: &Settings) -> Settings {
+    static LOADS: OnceLock<Loads> = OnceLock::new();
+    let measure = || device().quickest_loads(&Cache::off());
+    Settings {
+        loads: *LOADS.get_or_init(|| measure().expect("a measurement")),
+        ..settings.clone()
+    }
+}
+
 fn draw(stage: Stage<'_>, settings: &Settings, guidance: Guidance<'_>) -> Film {
+    let settings = &as_used(settings);
     let renderer = stage.guided_renderer(settings, guidance);
     let mut renderer = renderer.expect("a compiled shader");
     let flow = renderer

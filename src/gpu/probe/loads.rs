@@ -1,14 +1,15 @@
-//! Whether scattered memory is read faster in words or in double words: which of the two forms of a
-//! kernel to compile. No bit of a result depends on it.
+//! How scattered memory is read fastest: which of the forms of a kernel to compile. No bit of a result depends on it.
 //!
-//! A driver that runs shaders on a CPU reads lane by lane, or with gather instructions that take as
-//! long for 8 bytes as for 4: measured, not guessed from its name.
+//! A driver that runs shaders on a CPU reads a storage buffer lane by lane, or with gather instructions that take as
+//! long for 8 bytes as for 4, and a texel of 16 bytes with one load: measured, not guessed from its name.
 
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
+
 use super::kernel;
 use crate::gpu::pipeline::BindingKind;
-use crate::gpu::{Device, DeviceKind, GpuError, compiles_quickly};
+use crate::gpu::{Buffer, Device, DeviceInfo, DeviceKind, GpuError, compiles_quickly};
 use crate::host::Cache;
 
 /// Invocations of a run: some 10 ms of work on two cores, and on a GPU as many as it takes to see more than the dispatch.
@@ -18,25 +19,48 @@ const GPU_LANES: u32 = 1 << 14;
 const BYTES: u32 = 512 * 64;
 /// Runs of each form; the quickest counts.
 const RUNS: usize = 5;
-/// Double words must save this share of the time to be chosen: taking them apart costs more in a kernel
-/// that has other work to do.
+/// A form must save this share of the time of those before it to be chosen: in a kernel that has other work to do its
+/// pieces cost more.
 const WORTHWHILE: f64 = 0.2;
+/// Texel buffers that a device must allow, to be asked: as many as a scene's arrays may have pages.
+const TEXEL_BUFFERS: u32 = 64;
 
-/// Whether double words are faster; what was measured once for a device and driver is kept.
-pub(in crate::gpu) fn prefers_doublewords(
-    device: &Device,
-    cache: &Cache,
-) -> Result<bool, GpuError> {
-    if !device.info().int64 {
-        return Ok(false);
+/// Which forms are faster than words in storage buffers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Loads {
+    /// 64-bit integers in storage buffers.
+    pub doublewords: bool,
+    /// Texel buffers: faster than both, so what can be one is one.
+    pub texels: bool,
+}
+
+impl Loads {
+    /// What a device can do, faster or not.
+    pub fn possible(info: &DeviceInfo) -> Self {
+        Self {
+            doublewords: info.int64,
+            texels: info.max_texel_buffers >= TEXEL_BUFFERS,
+        }
+    }
+}
+
+/// The forms that are faster; what was measured once for a device and driver is kept.
+pub(in crate::gpu) fn quickest(device: &Device, cache: &Cache) -> Result<Loads, GpuError> {
+    if Loads::possible(device.info()) == Loads::default() {
+        return Ok(Loads::default());
     }
     let key = key(device);
-    if let Some(kept) = cache.get("loads", &key) {
-        return Ok(kept == [1]);
+    if let Some(&[doublewords, texels]) = cache.get("loads", &key).as_deref() {
+        let (doublewords, texels) = (doublewords == 1, texels == 1);
+        return Ok(Loads {
+            doublewords,
+            texels,
+        });
     }
-    let prefers = measure(device)?;
-    cache.put("loads", &key, &[u8::from(prefers)]);
-    Ok(prefers)
+    let loads = Measurement::new(device)?.quickest()?;
+    let kept = [u8::from(loads.doublewords), u8::from(loads.texels)];
+    cache.put("loads", &key, &kept);
+    Ok(loads)
 }
 
 fn key(device: &Device) -> [u8; 32] {
@@ -58,32 +82,66 @@ fn key(device: &Device) -> [u8; 32] {
     *hasher.finalize().as_bytes()
 }
 
-fn measure(device: &Device) -> Result<bool, GpuError> {
-    let data: Vec<u32> = (0..BYTES / 4)
-        .map(|i| i.wrapping_mul(0x9e37_79b9))
-        .collect();
-    let input = device.buffer_with("probe input", &data)?;
-    let lanes = match device.info().kind {
-        DeviceKind::Cpu => CPU_LANES,
-        _ => GPU_LANES,
-    };
-    let output = device.buffer("probe output", u64::from(4 * lanes))?;
-    let time = |entry: &str, binding: u32| {
-        let kinds = [(1, BindingKind::Storage), (binding, BindingKind::Storage)];
+struct Measurement<'a> {
+    device: &'a Device,
+    lanes: u32,
+    input: Buffer,
+    output: Buffer,
+}
+
+impl<'a> Measurement<'a> {
+    fn new(device: &'a Device) -> Result<Self, GpuError> {
+        let data: Vec<u32> = (0..BYTES / 4)
+            .map(|i| i.wrapping_mul(0x9e37_79b9))
+            .collect();
+        let lanes = match device.info().kind {
+            DeviceKind::Cpu => CPU_LANES,
+            _ => GPU_LANES,
+        };
+        Ok(Self {
+            device,
+            lanes,
+            input: device.buffer_with("probe input", &data)?,
+            output: device.buffer("probe output", u64::from(4 * lanes))?,
+        })
+    }
+
+    fn quickest(&self) -> Result<Loads, GpuError> {
+        let possible = Loads::possible(self.device.info());
+        let mut best = self.seconds("in_words", 0, BindingKind::Storage)?;
+        let mut is_worth = |seconds: f64| {
+            let is_worth = seconds < best * (1.0 - WORTHWHILE);
+            best = best.min(seconds);
+            is_worth
+        };
+        let mut loads = Loads::default();
+        if possible.doublewords {
+            let kind = BindingKind::Storage;
+            loads.doublewords = is_worth(self.seconds("in_doublewords", 2, kind)?);
+        }
+        if possible.texels {
+            let kind = BindingKind::Texels { words: 4 };
+            loads.texels = is_worth(self.seconds("in_texels", 3, kind)?);
+        }
+        Ok(loads)
+    }
+
+    /// What the quickest run of an entry point takes.
+    fn seconds(&self, entry: &str, binding: u32, kind: BindingKind) -> Result<f64, GpuError> {
+        let device = self.device;
+        let kinds = [(1, BindingKind::Storage), (binding, kind)];
         let spirv = kernel::compile(include_str!("loads.wgsl"), entry)?;
         let pipeline = device.pipeline("loads probe", &spirv, entry, &kinds, [64, 1, 1])?;
-        let group = device.bind(&pipeline, &[(1, &output, None), (binding, &input, None)])?;
+        let buffers = [(1, &self.output, None), (binding, &self.input, None)];
+        let group = device.bind(&pipeline, &buffers)?;
         // The first run compiles.
         device.dispatch(&pipeline, &group, [1, 1, 1])?;
         let mut quickest = Duration::MAX;
         for _ in 0..RUNS {
             let start = Instant::now();
-            device.dispatch(&pipeline, &group, [lanes / 64, 1, 1])?;
+            device.dispatch(&pipeline, &group, [self.lanes / 64, 1, 1])?;
             quickest = quickest.min(start.elapsed());
         }
-        Ok::<f64, GpuError>(quickest.as_secs_f64())
-    };
-    let words = time("in_words", 0)?;
-    let doublewords = time("in_doublewords", 2)?;
-    Ok(doublewords < words * (1.0 - WORTHWHILE))
+        Ok(quickest.as_secs_f64())
+    }
 }

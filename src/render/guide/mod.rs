@@ -83,9 +83,11 @@ impl Default for Guidance<'_> {
 impl<'a> Guidance<'a> {
     /// The buffers with their bindings.
     pub fn bindings(self) -> impl Iterator<Item = (u32, &'a Buffer)> {
-        let guide = self.guide.map(|buffer| (11, buffer));
+        // The table, and its header by itself.
+        let guide = self.guide.map(|buffer| [(11, buffer), (16, buffer)]);
         guide
             .into_iter()
+            .flatten()
             .chain(self.records.map(|buffer| (12, buffer)))
     }
 

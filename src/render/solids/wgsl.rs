@@ -120,9 +120,9 @@ impl<'a> SolidsText<'a> {
     pub fn declarations(&self) -> String {
         let mut text = format!(
             "const LIST_PAIRS: u32 = {}u;\n\
-             fn solid_error() -> f32 {{\n    return bitcast<f32>(load_element({0}u).a.x);\n}}\n\
-             fn solid_reach() -> f32 {{\n    return bitcast<f32>(load_element({0}u).a.y);\n}}\n\
-             fn solid_inverse_height() -> f32 {{\n    return bitcast<f32>(load_element({0}u).a.z);\n}}\n\
+             fn solid_error() -> f32 {{\n    return bitcast<f32>(load_element_uniform({0}u).a.x);\n}}\n\
+             fn solid_reach() -> f32 {{\n    return bitcast<f32>(load_element_uniform({0}u).a.y);\n}}\n\
+             fn solid_inverse_height() -> f32 {{\n    return bitcast<f32>(load_element_uniform({0}u).a.z);\n}}\n\
              #include \"accel/solids.wgsl\"\n",
             self.pairs,
         );
@@ -171,7 +171,12 @@ impl<'a> SolidsText<'a> {
 
     /// Declares the numbers as a function's own.
     pub fn load_numbers(&self) -> String {
-        let load = |i: usize| format!("    let numbers{i} = load_element({}u);\n", self.pairs + i);
+        let load = |i: usize| {
+            format!(
+                "    let numbers{i} = load_element_uniform({}u);\n",
+                self.pairs + i
+            )
+        };
         (0..self.numbers.len().div_ceil(WORDS)).map(load).collect()
     }
 
