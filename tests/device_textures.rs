@@ -4,7 +4,7 @@
 mod device_common;
 
 use device_common::*;
-use etendue::gpu::Buffer;
+use etendue::gpu::{Buffer, Loads};
 use etendue::render::program::Constant;
 use etendue::render::{GpuScene, Prepared};
 use etendue::scene::{Filter, Image, Material, Sampler, Scene, Texels, Texture, TextureSlot, Wrap};
@@ -212,7 +212,8 @@ fn run(setup: Setup) -> (usize, usize) {
     scene.validate().expect("a valid scene");
     let prepared = Prepared::new(&scene, 0, &Default::default()).expect("prepared");
     let gpu_scene = GpuScene::upload(device(), &prepared).expect("uploaded");
-    let buffers: Vec<(u32, &Buffer)> = gpu_scene.bindings();
+    let bindings = gpu_scene.bindings(Loads::default());
+    let buffers: Vec<(u32, &Buffer)> = bindings.into_iter().map(|(n, b, _)| (n, b)).collect();
     let kernel = setup
         .with([
             ("HAS_LINEAR_FILTER", Constant::Bool(true)),
@@ -298,10 +299,10 @@ fn the_srgb_table_is_exact() {
         &Default::default(),
     );
     let gpu_scene = GpuScene::upload(device(), &prepared.expect("prepared")).expect("uploaded");
-    let bindings = gpu_scene.bindings();
-    let (_, table) = bindings
+    let bindings = gpu_scene.bindings(Loads::default());
+    let (_, table, _) = bindings
         .iter()
-        .find(|(b, _)| *b == SRGB_TABLE)
+        .find(|(b, ..)| *b == SRGB_TABLE)
         .expect("the table");
     let values: Vec<f32> = device().read(table, 0, 256).expect("256 values");
     for (code, value) in values.into_iter().enumerate() {

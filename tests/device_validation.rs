@@ -56,7 +56,11 @@ fn a_render_under_the_validation_layer_is_clean() {
     let scene = scene();
     scene.validate().expect("a valid scene");
     let prepared = Prepared::new(&scene, 0, &Default::default()).expect("prepared");
-    for (staging, checked) in [(false, false), (true, true)] {
+    for (staging, checked, words) in [
+        (false, false, false),
+        (true, true, false),
+        (false, false, true),
+    ] {
         let options = OpenOptions {
             validation: true,
             staging,
@@ -70,7 +74,7 @@ fn a_render_under_the_validation_layer_is_clean() {
             spp: 4,
             checked,
             stats: true,
-            loads: if staging {
+            loads: if words {
                 Loads::default()
             } else {
                 Loads::possible(device.info())

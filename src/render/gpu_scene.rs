@@ -2,13 +2,13 @@
 
 use super::error::RenderError;
 use super::layout::Light;
-use super::paged::PagedBuffer;
+use super::paged::{Page, PagedBuffer};
 use super::prepared::Prepared;
 use super::program::device_elements;
 use super::reading::{FIRST_PAGED_BINDING, Reading};
 use super::short_tables::short_tables;
 use super::textures::srgb_table;
-use crate::gpu::{Buffer, Device, GpuError};
+use crate::gpu::{Bound, Buffer, Device, GpuError, Loads};
 
 /// The buffers of a scene.
 pub struct GpuScene {
@@ -29,7 +29,8 @@ impl GpuScene {
     /// The device's memory or number of bindings does not suffice.
     pub fn upload(device: &Device, scene: &Prepared) -> Result<Self, RenderError> {
         let paged = paged_buffers(device, scene)?;
-        let pages: usize = paged.iter().map(|p| p.pages().len()).sum();
+        let of_storage = |buffer: &PagedBuffer| buffer.pages(Loads::default()).len();
+        let pages: usize = paged.iter().map(of_storage).sum();
         let limit = device
             .info()
             .max_buffers
@@ -49,15 +50,36 @@ impl GpuScene {
         })
     }
 
-    /// Every buffer with its binding number.
-    pub fn bindings(&self) -> Vec<(u32, &Buffer)> {
-        let pages = self.paged.iter().flat_map(|p| p.pages());
-        let uniform = self.paged.iter().flat_map(|p| p.pages()).next();
-        self.fixed
-            .iter()
-            .map(|(binding, buffer)| (*binding, buffer))
-            .chain((FIRST_PAGED_BINDING..).zip(pages.chain(uniform)))
+    /// Every buffer with its binding number, for a kernel that reads so.
+    pub fn bindings(&self, loads: Loads) -> Vec<Bound<'_>> {
+        let fixed = self.fixed.iter();
+        let fixed = fixed.map(|(binding, buffer)| (*binding, buffer, None));
+        let pages = self.arrays().flat_map(|(array, texels)| {
+            array.pages(Loads {
+                texels: loads.texels && texels,
+                ..loads
+            })
+        });
+        let pages = pages.chain(self.uniform_page());
+        let paged = (FIRST_PAGED_BINDING..).zip(pages);
+        fixed
+            .chain(paged.map(|(binding, (buffer, range))| (binding, buffer, range)))
             .collect()
+    }
+
+    /// The large arrays, and whether texels are an advantage for it: all lanes read a list at one place.
+    fn arrays(&self) -> impl Iterator<Item = (&PagedBuffer, bool)> {
+        let texels = |i| i > 0 || !self.is_list;
+        self.paged
+            .iter()
+            .enumerate()
+            .map(move |(i, array)| (array, texels(i)))
+    }
+
+    /// The elements once more, where all are one page of a storage buffer ([`Reading::uniform_elements`]).
+    fn uniform_page(&self) -> Option<Page<'_>> {
+        let pages = self.paged.first()?.pages(Loads::default());
+        pages.first().copied().filter(|_| pages.len() == 1)
     }
 
     /// The generated `buffers.wgsl`.
@@ -67,21 +89,17 @@ impl GpuScene {
             "// Generated: the film, and large arrays, split over pages where the device asks for it.\n",
         ) + &reading.film()
             + &reading.tables(&self.short_tables);
-        let of_elements = if self.is_list {
-            reading.without_texels()
-        } else {
-            reading
-        };
-        for (i, buffer) in self.paged.iter().enumerate() {
-            text += &buffer.wgsl(binding, if i == 0 { of_elements } else { reading });
-            binding += buffer.pages().len() as u32;
+        for (array, texels) in self.arrays() {
+            let reading = if texels {
+                reading
+            } else {
+                reading.without_texels()
+            };
+            text += &array.wgsl(binding, reading);
+            binding += array.pages(reading.loads).len() as u32;
         }
-        // The elements are the first, and have a second binding after all others.
-        let pages = self
-            .paged
-            .first()
-            .map_or(1, |elements| elements.pages().len());
-        text + &of_elements.uniform_elements(pages, binding)
+        let uniform = self.uniform_page().filter(|_| !self.is_list);
+        text + &reading.uniform_elements(uniform.map(|_| binding))
     }
 
     /// Bytes of all data.

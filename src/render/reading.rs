@@ -43,7 +43,7 @@ pub fn large_arrays_wgsl(pages: usize) -> String {
         words.array(array, pages, 20, binding)
     };
     let arrays: String = LARGE_ARRAYS.into_iter().enumerate().map(paged).collect();
-    arrays + &words.uniform_elements(pages, 0) + &words.tables(&[]) + &words.film()
+    arrays + &words.uniform_elements(None) + &words.tables(&[]) + &words.film()
 }
 
 /// How a kernel reads large arrays and the film; by default in words.
@@ -125,17 +125,19 @@ impl Reading<'_> {
             }
     }
 
-    /// `load_element_uniform`, for an index that is the same for all lanes: a CPU reads it once in a storage buffer, which is a
-    /// binding of its own where `load_element` reads texels.
-    pub fn uniform_elements(self, pages: usize, binding: u32) -> String {
+    /// `load_element_uniform`, for an index that is the same for all lanes: a CPU reads it once in a storage buffer. Where
+    /// `load_element` reads texels that has a binding of its own, if it fits one.
+    pub fn uniform_elements(self, binding: Option<u32>) -> String {
         let accessor = "load_element_uniform";
-        if pages > 1 || !self.loads.texels {
-            return format!(
+        match binding.filter(|_| self.loads.texels) {
+            Some(binding) => {
+                let array = ("uniform_elements", "Element", accessor);
+                self.without_texels().array(array, 1, 31, binding)
+            }
+            None => format!(
                 "fn {accessor}(index: u32) -> Element {{\n    return load_element(index);\n}}\n"
-            );
+            ),
         }
-        let array = ("uniform_elements", "Element", accessor);
-        self.without_texels().array(array, 1, 31, binding)
     }
 }
 

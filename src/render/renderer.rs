@@ -161,10 +161,10 @@ impl<'a> Renderer<'a> {
             ];
             let buffers: Vec<_> = own
                 .into_iter()
-                .chain(on.gpu_scene.bindings())
                 .chain(guidance.bindings())
-                .filter(|(binding, _)| used.contains(binding))
                 .map(|(binding, buffer)| (binding, buffer, None))
+                .chain(on.gpu_scene.bindings(self.settings.loads))
+                .filter(|(binding, ..)| used.contains(binding))
                 .collect();
             let group = self.device.bind(&self.pipeline, &buffers)?;
             self.bands.push(BoundBand { band, film, group });

@@ -1,7 +1,7 @@
 //! Scenes made by hand, and their buffers.
 
 use etendue::accel::BuildOptions;
-use etendue::gpu::Buffer;
+use etendue::gpu::{Buffer, Loads};
 use etendue::render::layout::Frame;
 use etendue::render::program::Constant;
 use etendue::render::{GpuScene, LightSelection, Prepared, Settings, program};
@@ -43,7 +43,8 @@ impl Stage {
 
     /// Every buffer of the scene.
     pub fn buffers(&self) -> Vec<(u32, &Buffer)> {
-        let mut buffers = self.gpu_scene.bindings();
+        let bindings = self.gpu_scene.bindings(Loads::default());
+        let mut buffers: Vec<_> = bindings.into_iter().map(|(n, b, _)| (n, b)).collect();
         buffers.push((FRAME, &self.frame));
         buffers
     }
