@@ -21,8 +21,8 @@ pub enum Optimization {
 }
 
 /// Paths for each thread of the driver up to which a kernel that is compiled quickly is asked for. Drawing the picture
-/// and compiling take as long in both ways at 1.2 to 18 times as many, by scene and driver (docs/kernel.md).
-const QUICK_PATHS: u64 = 1 << 16;
+/// and compiling take as long in both ways at 1.1 to 24 times as many, by scene and driver (docs/kernel.md).
+const QUICK_PATHS: u64 = 3 << 14;
 
 impl Optimization {
     /// Its name: `auto`, `quick` or `full`.
