@@ -75,7 +75,7 @@ pub struct RenderArgs {
     pub guiding: Guiding,
 
     /// How much the driver optimizes the kernel, where it has a choice (lavapipe of Mesa 25 or newer). quick: it compiles in a
-    /// third to a half of the time and draws three to four times as long, the same picture; full; auto: quick up to 65,536
+    /// third to a half of the time and draws three to four times as long, the same picture; full; auto: quick up to 49,152
     /// paths (pixels times samples) a thread, so that a scene is sooner seen for the first time
     #[arg(long, value_name = "NAME", default_value_t)]
     pub optimization: Optimization,

@@ -54,32 +54,37 @@ impl GpuScene {
     pub fn bindings(&self, loads: Loads) -> Vec<Bound<'_>> {
         let fixed = self.fixed.iter();
         let fixed = fixed.map(|(binding, buffer)| (*binding, buffer, None));
-        let pages = self.arrays().flat_map(|(array, texels)| {
-            array.pages(Loads {
-                texels: loads.texels && texels,
-                ..loads
-            })
-        });
-        let pages = pages.chain(self.uniform_page());
+        let pages = self
+            .arrays(loads)
+            .flat_map(|(array, loads)| array.pages(loads));
+        let pages = pages.chain(self.uniform_page(loads));
         let paged = (FIRST_PAGED_BINDING..).zip(pages);
         fixed
             .chain(paged.map(|(binding, (buffer, range))| (binding, buffer, range)))
             .collect()
     }
 
-    /// The large arrays, and whether texels are an advantage for it: all lanes read a list at one place.
-    fn arrays(&self) -> impl Iterator<Item = (&PagedBuffer, bool)> {
-        let texels = |i| i > 0 || !self.is_list;
-        self.paged
-            .iter()
-            .enumerate()
-            .map(move |(i, array)| (array, texels(i)))
+    /// The large arrays, and how each is read.
+    fn arrays(&self, loads: Loads) -> impl Iterator<Item = (&PagedBuffer, Loads)> {
+        let others = std::iter::repeat(loads);
+        let all = std::iter::once(self.of_elements(loads)).chain(others);
+        self.paged.iter().zip(all)
     }
 
-    /// The elements once more, where all are one page of a storage buffer ([`Reading::uniform_elements`]).
-    fn uniform_page(&self) -> Option<Page<'_>> {
-        let pages = self.paged.first()?.pages(Loads::default());
-        pages.first().copied().filter(|_| pages.len() == 1)
+    /// How the elements are read: all lanes read a list at one place.
+    fn of_elements(&self, loads: Loads) -> Loads {
+        match self.is_list {
+            true => loads.without_texels(),
+            false => loads,
+        }
+    }
+
+    /// The elements once more, where they are read as texels and one page of a storage buffer holds all
+    /// ([`Reading::uniform_elements`]).
+    fn uniform_page(&self, loads: Loads) -> Option<Page<'_>> {
+        let pages = self.paged.first()?.pages(loads.without_texels());
+        let is_one = self.of_elements(loads).texels && pages.len() == 1;
+        pages.first().copied().filter(|_| is_one)
     }
 
     /// The generated `buffers.wgsl`.
@@ -89,17 +94,12 @@ impl GpuScene {
             "// Generated: the film, and large arrays, split over pages where the device asks for it.\n",
         ) + &reading.film()
             + &reading.tables(&self.short_tables);
-        for (array, texels) in self.arrays() {
-            let reading = if texels {
-                reading
-            } else {
-                reading.without_texels()
-            };
-            text += &array.wgsl(binding, reading);
-            binding += array.pages(reading.loads).len() as u32;
+        for (array, loads) in self.arrays(reading.loads) {
+            text += &array.wgsl(binding, Reading { loads, ..reading });
+            binding += array.pages(loads).len() as u32;
         }
-        let uniform = self.uniform_page().filter(|_| !self.is_list);
-        text + &reading.uniform_elements(uniform.map(|_| binding))
+        let uniform = self.uniform_page(reading.loads).map(|_| binding);
+        text + &reading.uniform_elements(uniform)
     }
 
     /// Bytes of all data.

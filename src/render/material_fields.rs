@@ -20,17 +20,17 @@ pub(super) struct MaterialFields<'a> {
 impl<'a> MaterialFields<'a> {
     /// Of a few materials all lanes read all, in a storage buffer.
     pub fn new(reading: Reading<'a>, is_short: bool) -> Self {
-        let layout = layouts().into_iter().find(|l| l.name == "Material");
         let fields = fields_of(reading.types, "Material");
         // Where a user's struct has others, the comparison with the host's is to refuse it.
         let is_known = |layout: &StructLayout| {
             let has = |name: &str| layout.fields.iter().any(|f| f.name == name);
-            fields.iter().all(|(name, _)| has(name))
+            layout.name == "Material" && fields.iter().all(|(name, _)| has(name))
         };
         let in_texels = reading.loads.texels && !is_short;
+        let layout = || layouts().into_iter().find(is_known);
         Self {
             types: reading.types,
-            texels: layout.filter(|layout| in_texels && is_known(layout)),
+            texels: in_texels.then(layout).flatten(),
         }
     }
 

@@ -38,7 +38,7 @@ const TABLES: [(Array<'_>, u32); 6] = [
 /// a scene.
 pub fn large_arrays_wgsl(pages: usize) -> String {
     let words = Reading::default();
-    let paged = |(i, array): (usize, (&str, &str, &str))| {
+    let paged = |(i, array): (usize, Array<'_>)| {
         let binding = FIRST_PAGED_BINDING + (i * pages) as u32;
         words.array(array, pages, 20, binding)
     };
@@ -58,8 +58,8 @@ pub struct Reading<'a> {
 impl Reading<'_> {
     /// The film's binding and accessors: `load_pixel(index)` and `store_pixel(index, pixel)`.
     pub fn film(self) -> String {
-        let reading = self.without_texels();
-        let (kind, accessors) = match Entry::new(self.types, "FilmPixel", reading.loads) {
+        let loads = self.loads.without_texels();
+        let (kind, accessors) = match Entry::new(self.types, "FilmPixel", loads) {
             Some(pixel) => ("u64", film_accessors(&pixel)),
             None => (
                 "FilmPixel",
@@ -69,15 +69,6 @@ impl Reading<'_> {
             ),
         };
         format!("@group(0) @binding(2) var<storage, read_write> film: array<{kind}>;\n{accessors}")
-    }
-
-    /// The same without texels: what is mostly at one place for all lanes is quicker in a storage buffer.
-    pub fn without_texels(self) -> Self {
-        let loads = Loads {
-            texels: false,
-            ..self.loads
-        };
-        Self { loads, ..self }
     }
 
     /// Bindings and accessors of the tables; of `short` ones all lanes read all entries, as they are.
@@ -126,13 +117,14 @@ impl Reading<'_> {
     }
 
     /// `load_element_uniform`, for an index that is the same for all lanes: a CPU reads it once in a storage buffer. Where
-    /// `load_element` reads texels that has a binding of its own, if it fits one.
+    /// `load_element` reads texels that has a binding of its own, if all fits one.
     pub fn uniform_elements(self, binding: Option<u32>) -> String {
         let accessor = "load_element_uniform";
-        match binding.filter(|_| self.loads.texels) {
+        match binding {
             Some(binding) => {
+                let loads = self.loads.without_texels();
                 let array = ("uniform_elements", "Element", accessor);
-                self.without_texels().array(array, 1, 31, binding)
+                Reading { loads, ..self }.array(array, 1, 31, binding)
             }
             None => format!(
                 "fn {accessor}(index: u32) -> Element {{\n    return load_element(index);\n}}\n"

@@ -8,17 +8,15 @@ use crate::gpu::GpuError;
 
 /// The SPIR-V of `probe.wgsl`.
 pub(super) fn spirv() -> Result<Vec<u32>, GpuError> {
-    compile(include_str!("probe.wgsl"), "main")
+    compile(include_str!("probe.wgsl"))
 }
 
-/// The SPIR-V of one entry point, in the version of Vulkan 1.1.
-pub(super) fn compile(text: &str, entry: &str) -> Result<Vec<u32>, GpuError> {
+/// The SPIR-V of a shader's entry point `main`, in the version of Vulkan 1.1.
+pub(super) fn compile(text: &str) -> Result<Vec<u32>, GpuError> {
     let failed = |error: &dyn std::error::Error| GpuError::Probe {
         reason: format!("its shader does not compile: {error}"),
     };
-    let mut module = naga::front::wgsl::parse_str(text).map_err(|e| failed(&e))?;
-    module.entry_points.retain(|e| e.name == entry);
-    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
+    let module = naga::front::wgsl::parse_str(text).map_err(|e| failed(&e))?;
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::SHADER_INT64);
     let info = validator.validate(&module).map_err(|e| failed(&e))?;
     let options = spv::Options {
@@ -29,7 +27,7 @@ pub(super) fn compile(text: &str, entry: &str) -> Result<Vec<u32>, GpuError> {
     };
     let pipeline = spv::PipelineOptions {
         shader_stage: ShaderStage::Compute,
-        entry_point: entry.to_owned(),
+        entry_point: "main".to_owned(),
     };
     spv::write_vec(&module, &info, &options, Some(&pipeline)).map_err(|e| failed(&e))
 }

@@ -22,6 +22,35 @@ const RUNS: usize = 5;
 /// A form must save this share of the time of those before it to be chosen: in a kernel that has other work to do its
 /// pieces cost more.
 const WORTHWHILE: f64 = 0.2;
+/// What is the same in all forms.
+const LOOP: &str = include_str!("loads.wgsl");
+const WORDS: &str = "
+@group(0) @binding(0) var<storage, read> memory: array<vec4u>;
+fn mixed(place: u32) -> vec4u {
+    let at = 4u * place;
+    return (memory[at] ^ memory[at + 1u]) + (memory[at + 2u] ^ memory[at + 3u]);
+}
+";
+const DOUBLE_WORDS: &str = "
+@group(0) @binding(0) var<storage, read> memory: array<u64>;
+fn both(at: u32) -> vec4u {
+    let a = memory[at];
+    let b = memory[at + 1u];
+    return vec4u(u32(a), u32(a >> 32u), u32(b), u32(b >> 32u));
+}
+fn mixed(place: u32) -> vec4u {
+    let at = 8u * place;
+    return (both(at) ^ both(at + 2u)) + (both(at + 4u) ^ both(at + 6u));
+}
+";
+const TEXELS: &str = "
+@group(0) @binding(0) var memory: texture_storage_1d<rgba32uint, read>;
+fn mixed(place: u32) -> vec4u {
+    let at = 4u * place;
+    return (textureLoad(memory, at) ^ textureLoad(memory, at + 1u))
+        + (textureLoad(memory, at + 2u) ^ textureLoad(memory, at + 3u));
+}
+";
 /// Texel buffers that a device must allow, to be asked: as many as a scene's arrays may have pages.
 const TEXEL_BUFFERS: u32 = 64;
 
@@ -40,6 +69,14 @@ impl Loads {
         Self {
             doublewords: info.int64,
             texels: info.max_texel_buffers >= TEXEL_BUFFERS,
+        }
+    }
+
+    /// The same without texels: what is mostly at one place for all lanes is quicker in a storage buffer.
+    pub fn without_texels(self) -> Self {
+        Self {
+            texels: false,
+            ..self
         }
     }
 }
@@ -74,7 +111,10 @@ fn key(device: &Device) -> [u8; 32] {
     for part in [
         &info.name,
         &info.driver,
-        include_str!("loads.wgsl"),
+        LOOP,
+        WORDS,
+        DOUBLE_WORDS,
+        TEXELS,
         compiles,
     ] {
         hasher.update(part.as_bytes()).update(&[0]);
@@ -108,7 +148,7 @@ impl<'a> Measurement<'a> {
 
     fn quickest(&self) -> Result<Loads, GpuError> {
         let possible = Loads::possible(self.device.info());
-        let mut best = self.seconds("in_words", 0, BindingKind::Storage)?;
+        let mut best = self.seconds(WORDS, BindingKind::Storage)?;
         let mut is_worth = |seconds: f64| {
             let is_worth = seconds < best * (1.0 - WORTHWHILE);
             best = best.min(seconds);
@@ -117,22 +157,22 @@ impl<'a> Measurement<'a> {
         let mut loads = Loads::default();
         if possible.doublewords {
             let kind = BindingKind::Storage;
-            loads.doublewords = is_worth(self.seconds("in_doublewords", 2, kind)?);
+            loads.doublewords = is_worth(self.seconds(DOUBLE_WORDS, kind)?);
         }
         if possible.texels {
             let kind = BindingKind::Texels { words: 4 };
-            loads.texels = is_worth(self.seconds("in_texels", 3, kind)?);
+            loads.texels = is_worth(self.seconds(TEXELS, kind)?);
         }
         Ok(loads)
     }
 
-    /// What the quickest run of an entry point takes.
-    fn seconds(&self, entry: &str, binding: u32, kind: BindingKind) -> Result<f64, GpuError> {
+    /// What the quickest run of a form takes.
+    fn seconds(&self, form: &str, kind: BindingKind) -> Result<f64, GpuError> {
         let device = self.device;
-        let kinds = [(1, BindingKind::Storage), (binding, kind)];
-        let spirv = kernel::compile(include_str!("loads.wgsl"), entry)?;
-        let pipeline = device.pipeline("loads probe", &spirv, entry, &kinds, [64, 1, 1])?;
-        let buffers = [(1, &self.output, None), (binding, &self.input, None)];
+        let kinds = [(0, kind), (1, BindingKind::Storage)];
+        let spirv = kernel::compile(&format!("{form}{LOOP}"))?;
+        let pipeline = device.pipeline("loads probe", &spirv, "main", &kinds, [64, 1, 1])?;
+        let buffers = [(0, &self.input, None), (1, &self.output, None)];
         let group = device.bind(&pipeline, &buffers)?;
         // The first run compiles.
         device.dispatch(&pipeline, &group, [1, 1, 1])?;
