@@ -1,5 +1,5 @@
 //! Structures of two levels, and an oracle that tests every triangle of every instance.
-#![allow(dead_code)] // Each test file uses its part.
+#![allow(dead_code)] // Each binary uses its part.
 
 use super::{Random, Triangles, cube, nasty_ray, needles, scaled, soup, sphere, terrain};
 use etendue::accel::{BuildOptions, Bvh, Hit, Placement, TwoLevel};

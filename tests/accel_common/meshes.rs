@@ -1,5 +1,5 @@
 //! Meshes for the tests of the acceleration structure.
-#![allow(dead_code)] // Each test file uses its part.
+#![allow(dead_code)] // Each binary uses its part.
 
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};

@@ -1,5 +1,5 @@
 //! Meshes, rays and a brute-force oracle for the tests of the acceleration structure.
-#![allow(dead_code)] // Each test file uses its part.
+#![allow(dead_code)] // Each binary uses its part.
 
 pub mod instances;
 mod meshes;

@@ -1,0 +1,4 @@
+//! Pictures in files.
+
+mod exr;
+mod malformed;

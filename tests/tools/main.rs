@@ -1,0 +1,5 @@
+//! The scripts of `tools/`.
+
+mod bench;
+mod contact_sheet;
+mod run;
