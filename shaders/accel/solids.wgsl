@@ -73,9 +73,9 @@ fn cross_slab(c: Passage, along: Course, low: f32, high: f32, low_face: u32, hig
   );
 }
 
-// Whether the ray certainly passes by.
-fn passes_by(c: Passage) -> bool {
-  return c.t_in - c.t_out > solid_error() * (c.scale_in + c.scale_out) || c.t_out < -solid_error() * c.scale_out;
+// Whether the ray certainly passes by; `error` is solid_error().
+fn passes_by(c: Passage, error: f32) -> bool {
+  return c.t_in - c.t_out > error * (c.scale_in + c.scale_out) || c.t_out < -error * c.scale_out;
 }
 
 // Whether the errors of solids are bounded for a ray.
@@ -103,20 +103,21 @@ fn no_face(ray: Ray) -> NearestFace {
 
 // The nearer of what is known and the face of a solid that the ray meets first.
 fn nearer_face(so_far: NearestFace, c: Passage, own: u32) -> NearestFace {
-  let meets = !passes_by(c);
+  let error = solid_error();
+  let meets = !passes_by(c, error);
   let enters = c.outside > 0.0 && c.face_in != OPEN;
   let t = select(c.t_out, c.t_in, enters);
   let face = select(c.face_out, c.face_in, enters);
-  let error = solid_error() * select(c.scale_out, c.scale_in, enters);
+  let t_error = error * select(c.scale_out, c.scale_in, enters);
   let is_there = meets && face < OPEN && face != own;
   let is_nearer = is_there && t < so_far.t;
-  let lost = select(select(FAR, t - error, is_there), so_far.t - so_far.error, is_nearer);
+  let lost = select(select(FAR, t - t_error, is_there), so_far.t - so_far.error, is_nearer);
   return NearestFace(
     select(so_far.t, t, is_nearer),
-    select(so_far.error, error, is_nearer),
+    select(so_far.error, t_error, is_nearer),
     select(so_far.face, face, is_nearer),
     select(so_far.rest, lost, lost < so_far.rest),
-    so_far.certain && (!meets || abs(c.outside) > solid_error()),
+    so_far.certain && (!meets || abs(c.outside) > error),
   );
 }
 
@@ -190,15 +191,16 @@ struct Obstacle {
 
 // The same after another solid, the ray starting on the face `own` and ending on `end`.
 fn obstacle(so_far: Obstacle, c: Passage, ray: Ray, own: u32, end: u32) -> Obstacle {
-  let error_in = solid_error() * c.scale_in;
-  let error_out = solid_error() * c.scale_out;
-  let misses = passes_by(c) || c.t_in - error_in > ray.t_max;
+  let error = solid_error();
+  let error_in = error * c.scale_in;
+  let error_out = error * c.scale_out;
+  let misses = passes_by(c, error) || c.t_in - error_in > ray.t_max;
   let pierced = c.t_out - c.t_in > error_in + error_out;
   let can_enter = c.face_in != OPEN && c.face_in != end;
   let can_leave = c.face_out != OPEN && c.face_out != end && c.face_out != own;
-  let enters = can_enter && c.outside > solid_error() && c.t_in + error_in < ray.t_max;
+  let enters = can_enter && c.outside > error && c.t_in + error_in < ray.t_max;
   let leaves = can_leave && c.t_out > error_out && c.t_out + error_out < ray.t_max;
-  let enters_not = !can_enter || c.outside < -solid_error();
+  let enters_not = !can_enter || c.outside < -error;
   let leaves_not = !can_leave || c.t_out - error_out > ray.t_max;
   let blocks = pierced && (enters || leaves);
   return Obstacle(

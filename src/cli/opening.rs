@@ -9,9 +9,10 @@ use super::message::Warnings;
 use super::optimization::Optimization;
 use super::report::{Seconds, timed};
 use super::{camera, environment, parse, settings};
+use crate::accel::BuildOptions;
 use crate::gpu::{Device, FoundDevice, OpenOptions, set_optimization};
 use crate::host::stages::stage;
-use crate::render::Settings;
+use crate::render::{Prepared, Settings};
 use crate::scene::{Features, Scene, gltf};
 
 /// Settles how the driver compiles, for which its version must be known where that may be quickly: then gives the device.
@@ -32,7 +33,14 @@ pub fn settle_optimization(args: &RenderArgs, time: &mut Seconds) -> Option<Resu
     })
 }
 
-/// Reads the scene while the device is opened, that is found here if it was not before.
+/// A scene, how it is to be rendered, and what the host makes of it.
+pub struct Loaded {
+    pub scene: Scene,
+    pub settings: Settings,
+    pub prepared: Prepared,
+}
+
+/// Reads and prepares the scene while the device is opened, that is found here if it was not before.
 ///
 /// # Errors
 /// Bad input, or no device. If both fail, it is the scene's error that counts.
@@ -41,20 +49,38 @@ pub fn load_and_open(
     found: Option<Result<FoundDevice>>,
     time: &mut Seconds,
     warnings: &mut Warnings,
-) -> Result<((Scene, Settings), Device)> {
+) -> Result<(Loaded, Device)> {
     std::thread::scope(|scope| {
-        let device = &mut time.device;
+        let Seconds {
+            device,
+            load,
+            accel,
+            ..
+        } = time;
         let find = || found.unwrap_or_else(|| find_device(args));
         let opening = scope.spawn(|| timed(device, || open_device(find()?)));
-        let scene = timed(&mut time.load, || load(args, warnings));
-        let scene = scene.and_then(|scene| Ok((settings::of(args, &scene)?, scene)));
-        let scene = scene.map(|(settings, scene)| (scene, settings));
+        let scene = timed(load, || read(args, warnings));
+        let loaded = scene.and_then(|scene| timed(accel, || prepare(args, scene)));
         let device = opening.join().unwrap_or_else(|panic| resume_unwind(panic));
-        Ok((scene?, device?))
+        Ok((loaded?, device?))
     })
 }
 
-fn load(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
+fn prepare(args: &RenderArgs, scene: Scene) -> Result<Loaded> {
+    let settings = settings::of(args, &scene)?;
+    let options = BuildOptions {
+        instancing: args.instancing,
+        ..BuildOptions::of(args.bvh)
+    };
+    let prepared = Prepared::with_lights(&scene, settings.camera, &options, args.lights)?;
+    Ok(Loaded {
+        scene,
+        settings,
+        prepared,
+    })
+}
+
+fn read(args: &RenderArgs, warnings: &mut Warnings) -> Result<Scene> {
     // The environment first: it is read faster, so a mistake in it is found sooner.
     let environment = stage("environment", || environment::load(args, warnings))?;
     let mut scene = gltf::load(&args.file, &args.load.options())?;

@@ -11,13 +11,12 @@ use super::interrupt::Interrupt;
 use super::lights_report::LightsReport;
 use super::message::{self, Warnings};
 use super::metadata::metadata;
-use super::opening::{load_and_open, settle_optimization};
+use super::opening::{Loaded, load_and_open, settle_optimization};
 use super::optimization::Optimization;
 use super::outputs::Outputs;
 use super::progress::ProgressLine;
 use super::report::{Report, Seconds, timed};
 use super::{camera, settings, shaders};
-use crate::accel::BuildOptions;
 use crate::gpu::DeviceInfo;
 use crate::host::Cache;
 use crate::host::stages::{seconds_since_start, stage};
@@ -47,15 +46,13 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
     let interrupt = Interrupt::install(args.quiet);
 
     // From files to buffers and a kernel on the device.
-    let ((mut scene, mut settings), device) = load_and_open(args, found, &mut time, &mut warnings)?;
-    settings.loads = stage("probe", || device.quickest_loads(library.cache()))?;
-    let options = BuildOptions {
-        instancing: args.instancing,
-        ..BuildOptions::of(args.bvh)
-    };
-    let prepared = timed(&mut time.accel, || {
-        Prepared::with_lights(&scene, settings.camera, &options, args.lights)
-    })?;
+    let (loaded, device) = load_and_open(args, found, &mut time, &mut warnings)?;
+    let Loaded {
+        mut scene,
+        mut settings,
+        prepared,
+    } = loaded;
+    settings.loads = stage("loads", || device.quickest_loads(library.cache()))?;
     camera::focus(args, &mut scene, &prepared, &settings)?;
     warn_of_scene(&scene, &prepared, args, &mut warnings);
     warn_of_optimization(args, device.info(), &mut warnings);

@@ -133,13 +133,18 @@ impl Vertices {
             flags(FIRST_ATTRIBUTES),
             flags(FIRST_ATTRIBUTES + 1),
         );
+        // Read once: a driver would find that out, but takes its time.
+        let mut pair = Some(format!(
+            "    let pair{i} = pair_vertices(load_element_uniform({i}u));\n"
+        ));
         for corner in 0..4 {
             let bits = [0, 1, 2].map(|k| element.words[3 * corner + k]);
             let name = self.0.entry(bits).or_insert_with(|| {
+                *text += &pair.take().unwrap_or_default();
                 let name = format!("v{i}_{corner}");
                 let _ = writeln!(
                     text,
-                    "    let {name} = exact_shear(setup, pair_vertices(load_element_uniform({i}u)).v{corner});"
+                    "    let {name} = exact_shear(setup, pair{i}.v{corner});"
                 );
                 name
             });

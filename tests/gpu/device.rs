@@ -198,7 +198,7 @@ fn the_validation_layer_is_heard() {
 fn without_a_driver_the_error_says_what_to_install() {
     // Not current_exe: under a private driver that is the dynamic loader (tools/lavapipe).
     let mut child = Command::new(std::env::args_os().next().expect("this test"));
-    child.args(["--exact", "child_without_a_driver", "--ignored"]);
+    child.args(["--exact", "device::child_without_a_driver", "--ignored"]);
     child
         .env("VK_ICD_FILENAMES", "/nonexistent.json")
         .env("VK_DRIVER_FILES", "/nonexistent.json");
