@@ -12,13 +12,13 @@ use crate::gpu::pipeline::BindingKind;
 use crate::gpu::{Buffer, Device, DeviceInfo, DeviceKind, GpuError, compiles_quickly};
 use crate::host::Cache;
 
-/// Invocations of a run: some 10 ms of work on two cores, and on a GPU as many as it takes to see more than the dispatch.
-const CPU_LANES: u32 = 1 << 12;
+/// Invocations of a run: some 5 ms of work on two cores, and on a GPU as many as it takes to see more than the dispatch.
+const CPU_LANES: u32 = 1 << 11;
 const GPU_LANES: u32 = 1 << 14;
 /// Bytes that are read from, as in the shader.
 const BYTES: u32 = 512 * 64;
 /// Runs of each form; the quickest counts.
-const RUNS: usize = 5;
+const RUNS: usize = 4;
 /// A form must save this share of the time of those before it to be chosen: in a kernel that has other work to do its
 /// pieces cost more.
 const WORTHWHILE: f64 = 0.2;
