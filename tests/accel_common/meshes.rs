@@ -22,6 +22,11 @@ impl Random {
         (self.bits() >> 40) as f32 / 16_777_216.0
     }
 
+    /// In [0, 1), of twice the bits.
+    pub fn unit_f64(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / 9_007_199_254_740_992.0
+    }
+
     pub fn below(&mut self, n: usize) -> usize {
         (self.bits() % n as u64) as usize
     }

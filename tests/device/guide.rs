@@ -1,6 +1,7 @@
 //! Path guiding on the device: samples against the densities that were learnt, the table's cells, and the
 //! training pass. The rate of false alarms is stated in common/statistics.rs.
 
+use crate::accel_common::Random;
 use crate::common::statistics::*;
 use crate::common::*;
 use etendue::render::{GuideTable, Lesson};
@@ -11,7 +12,7 @@ use glam::{DVec3, Vec3};
 fn lessons() -> Vec<Lesson> {
     let mut random = Random(7);
     let lesson = |_| {
-        let mut along = |size: f64| (size * random.unit()) as f32;
+        let mut along = |size: f64| (size * random.unit_f64()) as f32;
         let position = [along(2.0), along(4.0), along(8.0)];
         let face = along(6.0) as u32;
         let square = along(64.0) as usize;

@@ -2,10 +2,11 @@
 //! both ways to it, and nothing left out that may contribute. The rate of false alarms is stated in
 //! common/statistics.rs.
 
+use crate::accel_common::Random;
 use crate::common::lights::environment;
 use crate::common::scenes::*;
 use crate::common::statistics::*;
-use crate::common::{Random, SAMPLES, Setup};
+use crate::common::{SAMPLES, Setup};
 use etendue::render::LightSelection;
 use etendue::scene::{LightKind, Material, PunctualLight, Scene};
 use glam::{DVec3, Vec3};
@@ -26,15 +27,15 @@ fn unit(random: &mut Random) -> Vec3 {
 
 fn cube(random: &mut Random) -> Vec3 {
     Vec3::new(
-        random.unit() as f32,
-        random.unit() as f32,
-        random.unit() as f32,
+        random.unit_f64() as f32,
+        random.unit_f64() as f32,
+        random.unit_f64() as f32,
     ) * 2.0
         - 1.0
 }
 
 fn triangle(random: &mut Random, i: usize) -> [Vec3; 3] {
-    let size = 0.02 + 0.3 * random.unit() as f32;
+    let size = 0.02 + 0.3 * random.unit_f64() as f32;
     match i % 3 {
         0 => {
             let center = 4.0 * cube(random);
@@ -62,7 +63,7 @@ fn scene(scale: f32, offset: Vec3, with_sky: bool) -> Scene {
     };
     for i in 0..TRIANGLES {
         let corners = triangle(&mut random, i).map(|v| scale * (v + offset));
-        let strength = 10f32.powf(3.0 * random.unit() as f32);
+        let strength = 10f32.powf(3.0 * random.unit_f64() as f32);
         let material = Material {
             double_sided: i % 7 == 0,
             ..emitter(strength)
@@ -74,11 +75,11 @@ fn scene(scale: f32, offset: Vec3, with_sky: bool) -> Scene {
             i if i < POINTS => LightKind::Point,
             i if i < POINTS + SPOTS => LightKind::Spot {
                 inner: 0.1,
-                outer: 0.2 + 1.3 * random.unit(),
+                outer: 0.2 + 1.3 * random.unit_f64(),
             },
             _ => LightKind::Directional,
         };
-        let strength = 10f32.powf(3.0 * random.unit() as f32) * scale * scale;
+        let strength = 10f32.powf(3.0 * random.unit_f64() as f32) * scale * scale;
         scene.lights.push(PunctualLight {
             name: String::new(),
             intensity: Vec3::splat(0.001 * strength),

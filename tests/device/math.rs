@@ -1,5 +1,6 @@
 //! The shaders' arithmetic on the device: accuracy against f64, and bits against the host.
 
+use crate::accel_common::Random;
 use crate::common::*;
 use etendue::geometry::exact::{exact_edge, exact_edge_refined, exact_product_error};
 use glam::Vec2;
@@ -39,17 +40,18 @@ fn trigonometry_is_accurate() {
     let mut inputs: Vec<[u32; 4]> = (0..SAMPLES)
         .map(|i| {
             let turn = match i % 4 {
-                0 => (random.unit() * 8.0 - 4.0) as f32,
-                1 => random.unit() as f32,
+                0 => (random.unit_f64() * 8.0 - 4.0) as f32,
+                1 => random.unit_f64() as f32,
                 // Next to the multiples of an eighth, where the reduction changes.
                 2 => {
-                    ((i / 4 % 64) as f32 / 8.0 - 4.0) * (1.0 + (random.unit() - 0.5) as f32 * 1e-6)
+                    ((i / 4 % 64) as f32 / 8.0 - 4.0)
+                        * (1.0 + (random.unit_f64() - 0.5) as f32 * 1e-6)
                 }
-                _ => ((random.unit() - 0.5) * 2e6) as f32,
+                _ => ((random.unit_f64() - 0.5) * 2e6) as f32,
             };
             let exponent = 2f32.powi((i % 60) as i32 - 30);
-            let y = (random.unit() as f32 - 0.5) * exponent;
-            bits([turn, y, random.unit() as f32 - 0.5, 1.0])
+            let y = (random.unit_f64() as f32 - 0.5) * exponent;
+            bits([turn, y, random.unit_f64() as f32 - 0.5, 1.0])
         })
         .collect();
     let corners = [0.0, 1.0, -1.0, 0.5, -0.5, 1e-30, -1e-30, 1e30, -1e30];
@@ -121,7 +123,7 @@ fn neighbours_finiteness_and_high_products_are_exact() {
     inputs.extend((0..SAMPLES).map(|i| {
         let any = match i % 2 {
             0 => any_float(&mut random),
-            _ => (random.unit() * 20_000_000.0) as f32,
+            _ => (random.unit_f64() * 20_000_000.0) as f32,
         };
         [random.bits() as u32, random.bits() as u32, 0, any.to_bits()]
     }));
@@ -174,7 +176,7 @@ fn edge_inputs() -> Vec<[u32; 4]> {
         .map(|i| {
             let mut number = || {
                 let exponent = (source.bits() % 40) as i32 - 20;
-                (source.unit() as f32 - 0.5) * 2f32.powi(exponent)
+                (source.unit_f64() as f32 - 0.5) * 2f32.powi(exponent)
             };
             let (a, b, scale) = (number(), number(), number());
             bits(match i % 5 {
@@ -273,7 +275,7 @@ fn accumulate(setup: &Setup, triples: &[[f32; 3]], backwards: bool) -> Vec<[f64;
 
 fn triples() -> Vec<[f32; 3]> {
     let mut random = Random(5);
-    let mut positive = || (random.unit() * 10.0) as f32 + 1e-3;
+    let mut positive = || (random.unit_f64() * 10.0) as f32 + 1e-3;
     let mut list = vec![[0.1, 1.0 / 3.0, 0.1], [1e-30, 1e30, 0.7], [0.5, 1.0, 3e-6]];
     list.extend((list.len()..64).map(|_| [positive(), positive(), positive()]));
     list

@@ -1,6 +1,7 @@
 //! The samplers' numbers on the device: uniform, stratified where promised, and independent of
 //! other dimensions and pixels. The rate of false alarms is stated in common/statistics.rs.
 
+use crate::accel_common::Random;
 use crate::common::statistics::*;
 use crate::common::*;
 

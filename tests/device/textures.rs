@@ -1,6 +1,7 @@
 //! Texture look-up on the device against a reference in f64, for all wrap modes, filters, depths
 //! and encodings, at coordinates that are random, negative, large, and on the edges of texels.
 
+use crate::accel_common::Random;
 use crate::common::*;
 use etendue::gpu::{Buffer, Loads};
 use etendue::render::program::Constant;
@@ -187,13 +188,13 @@ fn coordinates(random: &mut Random, size: [u32; 2]) -> Vec<[f32; 2]> {
         let cell = (random.bits() % u64::from(6 * size)) as f64 - f64::from(3 * size);
         let edge = (cell / f64::from(size)) as f32;
         match i % 8 {
-            0 => random.unit() as f32,
-            1 => (random.unit() * 10.0 - 5.0) as f32,
+            0 => random.unit_f64() as f32,
+            1 => (random.unit_f64() * 10.0 - 5.0) as f32,
             2 => edge,
             3 => edge.next_up(),
             4 => edge.next_down(),
             5 => ((cell + 0.5) / f64::from(size)) as f32,
-            6 => ((random.unit() - 0.5) * 2e5) as f32,
+            6 => ((random.unit_f64() - 0.5) * 2e5) as f32,
             _ => [0.0, -0.0, 1.0, -1.0, 2.0, -1e-20, 1e7, -1e7, 1.5e9, -3e9]
                 [random.bits() as usize % 10],
         }

@@ -21,25 +21,24 @@ pub(super) fn remove(module: &mut Module) {
     let mut functions = std::mem::take(&mut module.functions);
     // A function calls earlier ones only.
     for (handle, function) in functions.iter_mut() {
-        results.replace_calls(function);
-        let known = reduce(module, function);
+        let known = reduce(module, function, &results);
         results.add(handle, function, &known);
     }
     module.functions = functions;
     let mut entry_points = std::mem::take(&mut module.entry_points);
     for entry in &mut entry_points {
-        results.replace_calls(&mut entry.function);
-        reduce(module, &mut entry.function);
+        reduce(module, &mut entry.function, &results);
     }
     module.entry_points = entry_points;
 }
 
 /// Until nothing changes: a branch that goes may have held the last other value of a temporary. Gives what is known in the end.
-fn reduce(module: &Module, function: &mut Function) -> Known {
+fn reduce(module: &Module, function: &mut Function, results: &Results) -> Known {
+    results.replace_in(function);
     let known = loop {
         let known = known_values(module, function);
         let mut body = std::mem::take(&mut function.body);
-        let changed = reduce_block(&mut body, &known);
+        let changed = reduce_block(&mut body, &known, results);
         function.body = body;
         if !changed {
             break known;
@@ -94,11 +93,11 @@ fn visit(block: &Block, look: &mut impl FnMut(&Statement)) {
 }
 
 /// Whether anything was left out.
-fn reduce_block(block: &mut Block, known: &Known) -> bool {
+fn reduce_block(block: &mut Block, known: &Known, results: &Results) -> bool {
     let mut changed = false;
     let mut kept = Block::with_capacity(block.len());
     for (statement, span) in std::mem::take(block).span_into_iter() {
-        changed |= reduce_statement(statement, span, known, &mut kept);
+        changed |= reduce_statement(statement, span, known, results, &mut kept);
         if kept.last().is_some_and(Statement::is_terminator) {
             break;
         }
@@ -107,9 +106,17 @@ fn reduce_block(block: &mut Block, known: &Known) -> bool {
     changed
 }
 
-fn reduce_statement(mut statement: Statement, span: Span, known: &Known, kept: &mut Block) -> bool {
+fn reduce_statement(
+    mut statement: Statement,
+    span: Span,
+    known: &Known,
+    results: &Results,
+    kept: &mut Block,
+) -> bool {
     let mut changed = false;
     match &mut statement {
+        // Its result is a literal, which changes nothing that is known.
+        Statement::Call { function, .. } if results.settle(*function) => return false,
         Statement::If {
             condition,
             accept,
@@ -117,26 +124,26 @@ fn reduce_statement(mut statement: Statement, span: Span, known: &Known, kept: &
         } => match truth(known, *condition) {
             Some(taken) => {
                 let mut branch = std::mem::take(if taken { accept } else { reject });
-                reduce_block(&mut branch, known);
+                reduce_block(&mut branch, known, results);
                 kept.append(&mut branch);
                 return true;
             }
             None => {
-                changed |= reduce_block(accept, known);
-                changed |= reduce_block(reject, known);
+                changed |= reduce_block(accept, known, results);
+                changed |= reduce_block(reject, known, results);
             }
         },
-        Statement::Block(inner) => changed |= reduce_block(inner, known),
+        Statement::Block(inner) => changed |= reduce_block(inner, known, results),
         Statement::Switch { cases, .. } => {
             for case in cases {
-                changed |= reduce_block(&mut case.body, known);
+                changed |= reduce_block(&mut case.body, known, results);
             }
         }
         Statement::Loop {
             body, continuing, ..
         } => {
-            changed |= reduce_block(body, known);
-            changed |= reduce_block(continuing, known);
+            changed |= reduce_block(body, known, results);
+            changed |= reduce_block(continuing, known, results);
         }
         _ => {}
     }

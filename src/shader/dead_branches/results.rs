@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use naga::{Block, Expression, Function, Handle, Literal, Statement};
+use naga::{Expression, Function, Handle, Literal, Statement};
 
 use super::known::{Known, value};
 use super::visit;
@@ -19,8 +19,13 @@ impl Results {
         }
     }
 
-    /// Leaves out the calls of such functions; their results become literals.
-    pub fn replace_calls(&self, function: &mut Function) {
+    /// Whether a call of a function is one of such a function.
+    pub fn settle(&self, function: Handle<Function>) -> bool {
+        self.0.contains_key(&function)
+    }
+
+    /// Makes literals of the results of such calls.
+    pub fn replace_in(&self, function: &mut Function) {
         for (_, expression) in function.expressions.iter_mut() {
             if let Expression::CallResult(callee) = *expression
                 && let Some(&literal) = self.0.get(&callee)
@@ -28,35 +33,6 @@ impl Results {
                 *expression = Expression::Literal(literal);
             }
         }
-        self.remove_calls(&mut function.body);
-    }
-
-    fn remove_calls(&self, block: &mut Block) {
-        let mut kept = Block::with_capacity(block.len());
-        for (mut statement, span) in std::mem::take(block).span_into_iter() {
-            match &mut statement {
-                Statement::Call { function, .. } if self.0.contains_key(function) => continue,
-                Statement::Block(inner) => self.remove_calls(inner),
-                Statement::If { accept, reject, .. } => {
-                    self.remove_calls(accept);
-                    self.remove_calls(reject);
-                }
-                Statement::Switch { cases, .. } => {
-                    for case in cases {
-                        self.remove_calls(&mut case.body);
-                    }
-                }
-                Statement::Loop {
-                    body, continuing, ..
-                } => {
-                    self.remove_calls(body);
-                    self.remove_calls(continuing);
-                }
-                _ => {}
-            }
-            kept.push(statement, span);
-        }
-        *block = kept;
     }
 }
 

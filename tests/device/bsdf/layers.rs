@@ -8,7 +8,8 @@ use glam::Vec4;
 
 use super::bench::Bench;
 use super::case::{Case, layered};
-use crate::common::{BSDF_TABLES, Random, Setup, upload};
+use crate::accel_common::Random;
+use crate::common::{BSDF_TABLES, Setup, upload};
 
 /// 2 ∫ F µ dµ by the midpoint rule.
 #[test]
@@ -134,12 +135,12 @@ impl Coat {
     /// A walk of light from the eye: the coat reflects its albedo at each direction, from either side, and lets the
     /// rest pass without bending it; the base is Lambertian. 1 if the walk gets out.
     fn walk(&self, reflectance: f64, cos_o: f64, random: &mut Random) -> f64 {
-        if random.unit() < self.at(cos_o) {
+        if random.unit_f64() < self.at(cos_o) {
             return 1.0;
         }
-        while random.unit() < reflectance {
-            let cos = random.unit().sqrt();
-            if random.unit() >= self.at(cos) {
+        while random.unit_f64() < reflectance {
+            let cos = random.unit_f64().sqrt();
+            if random.unit_f64() >= self.at(cos) {
                 return 1.0;
             }
         }

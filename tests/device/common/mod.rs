@@ -287,20 +287,3 @@ impl Kernel {
 pub fn upload<T: Pod>(label: &str, data: &[T]) -> Buffer {
     device().buffer_with(label, data).expect("a buffer")
 }
-
-/// SplitMix64: repeatable numbers for the host's side.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// In [0, 1).
-    pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / 9_007_199_254_740_992.0
-    }
-}

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::{COLUMNS, ROWS, hot_environment, picture, sunny};
-use crate::common::Random;
+use crate::accel_common::Random;
 use crate::common::lights::Bench;
 
 const ALL: f64 = (1u32 << 31) as f64;

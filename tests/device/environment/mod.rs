@@ -6,10 +6,10 @@ mod variance;
 
 use std::f64::consts::PI;
 
+use crate::accel_common::Random;
 use crate::common::grid::{SphereGrid, even, even_grid};
 use crate::common::lights::*;
 use crate::common::statistics::*;
-use crate::common::*;
 use etendue::scene::{EnvironmentImage, Scene};
 use glam::{DMat3, DVec3, Vec3};
 
@@ -26,7 +26,7 @@ const ROWS: usize = 16;
 fn hot_environment() -> Scene {
     let mut random = Random(6);
     let mut texels: Vec<[f32; 3]> = (0..COLUMNS * ROWS)
-        .map(|_| [random.unit() as f32; 3])
+        .map(|_| [random.unit_f64() as f32; 3])
         .collect();
     for y in 5..12 {
         for x in 12..20 {
@@ -208,7 +208,7 @@ fn no_light_above_the_horizon_is_left_out() {
     let (directions, _) = texel_grid(0.9).points();
     let mut random = Random(23);
     for _ in 0..40 {
-        let mut coordinate = || random.unit() as f32 - 0.5;
+        let mut coordinate = || random.unit_f64() as f32 - 0.5;
         let normal = Vec3::new(coordinate(), coordinate(), coordinate()).normalize();
         let bench = Bench::new(&hot_environment(), Vec3::ZERO, normal);
         let values = bench.evaluate("evaluate_environment", &directions);
