@@ -173,9 +173,30 @@ impl<'a> Entry<'a> {
     }
 }
 
-/// Accessors of an array, which is declared in `pages` pages of 2^`page_bits`: of an entry, of its first
-/// piece, and of the rest after that.
-pub(super) fn accessors(
+/// The accessor of an array, which is declared in `pages` pages of 2^`page_bits`.
+pub(super) fn in_pieces(
+    (name, kind, accessor): Array<'_>,
+    entry: &Entry<'_>,
+    pages: usize,
+    page_bits: u32,
+) -> String {
+    let first = format!("{}u * i", entry.count);
+    if pages == 1 {
+        return entry.accessor(accessor, &format!("{name}_0"), &first);
+    }
+    let of_page = |page| {
+        let (function, array) = (format!("{accessor}_{page}"), format!("{name}_{page}"));
+        entry.accessor(&function, &array, &first)
+    };
+    let by_page = by_page(pages, page_bits, &|page| {
+        format!("{accessor}_{page}(offset)")
+    });
+    let of_pages: String = (0..pages).map(of_page).collect();
+    of_pages + &format!("fn {accessor}(index: u32) -> {kind} {{\n{by_page}}}\n")
+}
+
+/// The same, and two more: of an entry's first piece, and of the rest after that.
+pub(super) fn in_pieces_ahead(
     (name, kind, accessor): Array<'_>,
     entry: &Entry<'_>,
     pages: usize,

@@ -1,6 +1,6 @@
 //! How a kernel reads arrays: the generated `buffers.wgsl`.
 
-use super::array_wgsl::{Entry, accessors, film_accessors};
+use super::array_wgsl::{Entry, film_accessors, in_pieces, in_pieces_ahead};
 use crate::gpu::Loads;
 
 /// First binding of the large arrays; those below are in `shaders/bindings.wgsl`.
@@ -107,11 +107,11 @@ impl Reading<'_> {
         let is_elements = accessor == LARGE_ARRAYS[0].2;
         declarations
             + &match entry {
-                Some(entry) => {
+                Some(entry) if is_elements => {
                     let alias = format!("alias ElementStart = {};\n", entry.piece().kind());
-                    let alias = if is_elements { &alias } else { "" };
-                    alias.to_owned() + &accessors(array, &entry, pages, page_bits)
+                    alias + &in_pieces_ahead(array, &entry, pages, page_bits)
                 }
+                Some(entry) => in_pieces(array, &entry, pages, page_bits),
                 None => in_words(array, pages, page_bits, is_elements),
             }
     }
