@@ -12,7 +12,7 @@ use super::lights_report::LightsReport;
 use super::message::{self, Warnings};
 use super::metadata::metadata;
 use super::opening::{Loaded, load_and_open, settle_optimization};
-use super::optimization::Optimization;
+use super::optimization::{Optimization, loads};
 use super::outputs::Outputs;
 use super::progress::ProgressLine;
 use super::report::{Report, Seconds, timed};
@@ -52,7 +52,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit> {
         mut settings,
         prepared,
     } = loaded;
-    settings.loads = stage("loads", || device.quickest_loads(library.cache()))?;
+    settings.loads = stage("loads", || loads(args, &device, library.cache()))?;
     camera::focus(args, &mut scene, &prepared, &settings)?;
     warn_of_scene(&scene, &prepared, args, &mut warnings);
     warn_of_optimization(args, device.info(), &mut warnings);

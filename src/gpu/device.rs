@@ -138,6 +138,14 @@ impl Device {
         probe::loads::quickest(self, cache)
     }
 
+    /// The same as far as it was measured before, or all that its shaders can do: for what is done before a measurement
+    /// is. That is compiled in the least time, too.
+    #[must_use]
+    pub fn likely_loads(&self, cache: &Cache) -> Loads {
+        let possible = || Loads::possible(self.info());
+        probe::loads::kept(self, cache).unwrap_or_else(possible)
+    }
+
     /// Makes a buffer of `bytes` bytes (16 for 0), filled with zeros.
     ///
     /// # Errors

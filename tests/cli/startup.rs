@@ -10,9 +10,14 @@ use serde_json::Value;
 
 /// A tiny render whose report goes to stdout; `cache` is its folder for compiled shaders.
 fn render(cache: &Path) -> Command {
+    render_samples(cache, "16x12", 4)
+}
+
+fn render_samples(cache: &Path, size: &str, samples: usize) -> Command {
     let scene = "scenes/cornell_box.gltf";
+    let samples = samples.to_string();
     let mut command = command(&[
-        "render", scene, "--size", "16x12", "--spp", "4", "--json", "-", "-q",
+        "render", scene, "--size", size, "--spp", &samples, "--json", "-", "-q",
     ]);
     command
         .env("ETENDUE_CACHE_DIR", cache)
@@ -24,19 +29,36 @@ fn run(mut command: Command) -> Run {
     finish(command.spawn().expect("the program starts")).ends_with(0)
 }
 
-/// The file of the only shader in a cache, where the device's measured preferences may be, too.
-fn entry(cache: &Path) -> PathBuf {
+/// The files of a kind in a cache.
+fn entries(cache: &Path, kind: &str) -> Vec<PathBuf> {
     let listing = fs::read_dir(cache).expect("the cache's folder");
-    let is_shader = |path: &PathBuf| {
+    let is_of_kind = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default();
-        name.to_string_lossy().starts_with("spirv-")
+        name.to_string_lossy().starts_with(kind)
     };
-    let files: Vec<_> = listing
-        .map(|f| f.expect("an entry").path())
-        .filter(is_shader)
-        .collect();
+    let paths = listing.map(|f| f.expect("an entry").path());
+    paths.filter(is_of_kind).collect()
+}
+
+/// The file of the only shader.
+fn entry(cache: &Path) -> PathBuf {
+    let files = entries(cache, "spirv-");
     assert_eq!(files.len(), 1, "{files:?}");
     files[0].clone()
+}
+
+#[test]
+fn how_memory_is_read_is_measured_for_pictures_that_take_longer_than_that() {
+    let folder = folder();
+    let measured = |mut command: Command| {
+        command.env("LP_NUM_THREADS", "2");
+        run(command);
+        entries(folder.path(), "loads-").len()
+    };
+    assert_eq!(measured(render(folder.path())), 0);
+    let larger = || render_samples(folder.path(), "64x97", 2);
+    assert_eq!(measured(larger()), 1);
+    assert_eq!(measured(larger()), 1);
 }
 
 /// What must not depend on the cache.

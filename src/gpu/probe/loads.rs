@@ -86,18 +86,24 @@ pub(in crate::gpu) fn quickest(device: &Device, cache: &Cache) -> Result<Loads, 
     if Loads::possible(device.info()) == Loads::default() {
         return Ok(Loads::default());
     }
-    let key = key(device);
-    if let Some(&[doublewords, texels]) = cache.get("loads", &key).as_deref() {
-        let (doublewords, texels) = (doublewords == 1, texels == 1);
-        return Ok(Loads {
-            doublewords,
-            texels,
-        });
+    if let Some(known) = kept(device, cache) {
+        return Ok(known);
     }
     let loads = Measurement::new(device)?.quickest()?;
     let kept = [u8::from(loads.doublewords), u8::from(loads.texels)];
-    cache.put("loads", &key, &kept);
+    cache.put("loads", &key(device), &kept);
     Ok(loads)
+}
+
+/// What was measured before, if that was kept.
+pub(in crate::gpu) fn kept(device: &Device, cache: &Cache) -> Option<Loads> {
+    match cache.get("loads", &key(device)).as_deref() {
+        Some(&[doublewords, texels]) => Some(Loads {
+            doublewords: doublewords == 1,
+            texels: texels == 1,
+        }),
+        _ => None,
+    }
 }
 
 fn key(device: &Device) -> [u8; 32] {
