@@ -127,6 +127,11 @@ impl<'a> Entry<'a> {
         format!("fn {name}(i: u32) -> {kind} {{\n{reads}{value}}}\n")
     }
 
+    /// The same of entry `i` of an array of nothing else.
+    fn indexed_accessor(&self, name: &str, array: &str) -> String {
+        self.accessor(name, array, &format!("{}u * i", self.count))
+    }
+
     /// What it is read in.
     pub fn piece(&self) -> Piece {
         self.piece
@@ -180,14 +185,12 @@ pub(super) fn in_pieces(
     pages: usize,
     page_bits: u32,
 ) -> String {
-    let first = format!("{}u * i", entry.count);
+    // No function that only calls another: each takes time to compile, wherever it is called.
     if pages == 1 {
-        return entry.accessor(accessor, &format!("{name}_0"), &first);
+        return entry.indexed_accessor(accessor, &format!("{name}_0"));
     }
-    let of_page = |page| {
-        let (function, array) = (format!("{accessor}_{page}"), format!("{name}_{page}"));
-        entry.accessor(&function, &array, &first)
-    };
+    let of_page =
+        |page| entry.indexed_accessor(&format!("{accessor}_{page}"), &format!("{name}_{page}"));
     let by_page = by_page(pages, page_bits, &|page| {
         format!("{accessor}_{page}(offset)")
     });
@@ -237,9 +240,9 @@ pub(super) fn film_accessors(pixel: &Entry<'_>) -> String {
     };
     let words = pixel.words_of("pixel");
     let writes: String = words.chunks_exact(2).enumerate().map(write).collect();
-    let (reads, value) = (pixel.reads(0, "film", place), pixel.assembly());
+    let load = pixel.indexed_accessor("load_pixel", "film");
     format!(
-        "fn load_pixel(index: u32) -> FilmPixel {{\n{reads}{value}}}\n\
+        "{load}\
          fn store_pixel(index: u32, pixel: FilmPixel) {{\n{writes}}}\n"
     )
 }
