@@ -12,7 +12,9 @@ use super::layout::{self, StructLayout};
 use super::naga_report::Reporter;
 use super::overrides::{self, OverrideInfo};
 use super::reflect::{self, Binding};
-use super::{ShaderError, dead_branches, exact, guard, naga_options, no_contraction, spirv};
+use super::{
+    ShaderError, dead_branches, exact, guard, naga_options, no_contraction, short_circuits, spirv,
+};
 
 /// How to compile.
 #[derive(Debug, Clone, Copy)]
@@ -106,6 +108,7 @@ fn compile_unguarded(
     let warnings = exact::warnings(&resolved, report);
     let mut live = resolved.into_owned();
     dead_branches::remove(&mut live);
+    short_circuits::flatten(&mut live);
     compact(&mut live, KeepUnused::No);
     let info = validate(&live, report)?;
 

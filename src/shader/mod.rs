@@ -22,6 +22,7 @@ mod no_contraction;
 mod overrides;
 mod path;
 mod reflect;
+mod short_circuits;
 mod source_map;
 mod spirv;
 #[cfg(test)]
