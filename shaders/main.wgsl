@@ -34,7 +34,8 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
     if (item * dispatch.lane_stride != id.x) {
         return;
     }
-    var has_pixel = false;
+    // Flags are numbers, as in accel/bvh.wgsl.
+    var has_pixel = 0u;
     var position: vec2u;
     var index = 0u;
     var pixel: FilmPixel;
@@ -42,23 +43,23 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
     var steps_before = steps;
     var random: Sampler;
     var path: Path;
-    var on_its_way = false;
+    var on_its_way = 0u;
     var traversal: Traversal;
-    var tracing = false;
+    var tracing = 0u;
     loop {
         if (count_step()) {
             break;
         }
         // Begin to draw a sample of the pixel's square.
-        if (!on_its_way) {
-            if (!has_pixel || pixel.count >= dispatch.target_count) {
-                if (has_pixel) {
+        if (on_its_way == 0u) {
+            if (has_pixel == 0u || pixel.count >= dispatch.target_count) {
+                if (has_pixel != 0u) {
                     store_pixel(index, pixel);
                     item += dispatch.lanes;
                 }
                 position = seek_pixel(&item);
-                has_pixel = item < dispatch.item_count;
-                if (!has_pixel) {
+                has_pixel = select(0u, 1u, item < dispatch.item_count);
+                if (has_pixel == 0u) {
                     break;
                 }
                 index = film_index(position);
@@ -78,16 +79,16 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
             random = sampler_begin(position, sample_index, frame.seed);
             let on_film = place_on_film(&random);
             path = path_begin(camera_ray(position, on_film, lens_numbers(random)), &random);
-            on_its_way = true;
+            on_its_way = 1u;
         }
-        if (!tracing) {
+        if (tracing == 0u) {
             traversal = begin_query(path_query(path, &random));
-            tracing = true;
+            tracing = 1u;
         }
         if (trace_on(&traversal, TRACE_ELEMENTS)) {
-            tracing = false;
-            on_its_way = path_step(&path, trace_answer(traversal), &random);
-            if (!on_its_way) {
+            tracing = 0u;
+            on_its_way = select(0u, 1u, path_step(&path, trace_answer(traversal), &random));
+            if (on_its_way == 0u) {
                 if (out_of_steps() || loops_are_cut()) {
                     break;
                 }
@@ -97,7 +98,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
         }
     }
     // Otherwise the loop ends where the last pixel has been written: code that moves a pixel takes long to compile.
-    if (COUNT_STEPS && has_pixel) {
+    if (COUNT_STEPS && has_pixel != 0u) {
         store_pixel(index, pixel);
         if (pixel.count < dispatch.target_count) {
             atomicAdd(&status.unfinished, 1u);

@@ -6,32 +6,38 @@
 #include "accel/boxes.wgsl"
 #include "accel/closest.wgsl"
 
-// A query under way. The rest of its state, the children that wait, is on the stack.
+// A query under way. The rest of its state, the children that wait, is on the stack. Flags are numbers, 0 or 1, and there
+// are few branches: on CPUs a truth value that outlives a branch takes longer than a number (docs/kernel.md).
 struct Traversal {
   query: Query,
+  has_ray: u32,
+  camera_ray: u32,
   // The ray that is traced now: query.shadow, then query.ray.
   ray: Ray,
-  is_shadow: bool,
+  is_shadow: u32,
   setup: RaySetup,
   boxes: BoxSetup,
   best: Closest,
   group: Group,
-  // The group that was put aside last, if stack_size > 0; those before it are on the stack.
+  // The group that was put aside last, if it has slots; those before it are on the stack.
   top: Group,
   stack_size: u32,
   // The element to look at next, and its first words: the wait for memory begins as soon as it is known.
   next: u32,
   start: ElementStart,
-  occluded: bool,
-  searching: bool,
+  occluded: u32,
+  searching: u32,
 }
 
 fn trace_begin(query: Query) -> Traversal {
   var t: Traversal;
   t.query = query;
-  t.occluded = false;
-  t.searching = query.has_ray || query.has_shadow;
+  t.has_ray = select(0u, 1u, query.has_ray);
+  t.camera_ray = select(0u, 1u, query.camera_ray);
+  t.occluded = 0u;
+  t.searching = select(0u, 1u, query.has_ray || query.has_shadow);
   t.stack_size = 0u;
+  t.top = Group(0u, 0u, 0u);
   trace_ray(&t, query.has_shadow);
   t.start = load_element_start(0u);
   return t;
@@ -39,7 +45,7 @@ fn trace_begin(query: Query) -> Traversal {
 
 // Takes up one of the two rays.
 fn trace_ray(t: ptr<function, Traversal>, is_shadow: bool) {
-  (*t).is_shadow = is_shadow;
+  (*t).is_shadow = select(0u, 1u, is_shadow);
   (*t).ray = (*t).query.ray;
   if (is_shadow) {
     (*t).ray = (*t).query.shadow;
@@ -58,14 +64,16 @@ fn trace_answer(t: Traversal) -> Answer {
     let refined = refined_hit_on_pair(hit.pair, t.best.triangle, t.setup);
     hit = Hit(refined.t, t.best.triangle, refined.b, refined.back_face, hit.pair);
   }
-  return Answer(hit, t.occluded);
+  return Answer(hit, t.occluded != 0u);
 }
 
 // Looks at so many elements, or fewer where that answers the query; false if there is more to do.
 fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
-  for (var i = 0u; i < elements && (*t).searching; i += 1u) {
+  var left = select(0u, elements, (*t).searching != 0u);
+  while (left != 0u) {
+    left -= 1u;
     if (count_step()) {
-      (*t).searching = false;
+      (*t).searching = 0u;
       break;
     }
     let index = (*t).next & ~LEAF_FLAG;
@@ -73,73 +81,66 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
     if (COUNT_RAYS) { count_element((*t).next < LEAF_FLAG); }
     if ((*t).next < LEAF_FLAG) {
       let children = visit_node(e, (*t).boxes, (*t).best.high);
-      if (children.slots != 0u) {
-        if ((*t).group.slots != 0u) {
-          if ((*t).stack_size > 0u) {
-            stack_write((*t).stack_size - 1u, (*t).top);
-          }
-          (*t).top = (*t).group;
-          (*t).stack_size += 1u;
-        }
-        (*t).group = children;
+      let is_put_aside = children.slots != 0u && (*t).group.slots != 0u;
+      if (is_put_aside && (*t).top.slots != 0u) {
+        stack_write((*t).stack_size, (*t).top);
+        (*t).stack_size += 1u;
       }
+      (*t).top = select_group((*t).top, (*t).group, is_put_aside);
+      (*t).group = select_group((*t).group, children, children.slots != 0u);
     } else {
-      let seed = select((*t).query.seed, (*t).query.shadow_seed, (*t).is_shadow);
-      let camera_ray = (*t).query.camera_ray && !(*t).is_shadow;
+      let seed = select((*t).query.seed, (*t).query.shadow_seed, (*t).is_shadow != 0u);
+      let camera_ray = (*t).camera_ray > (*t).is_shadow;
       (*t).best = test_pair(e, index, (*t).ray, (*t).setup, (*t).best, camera_ray, seed);
-      if ((*t).is_shadow && (*t).best.triangle != MISS) {
-        (*t).group.slots = 0u;
-        (*t).stack_size = 0u;
-      }
+      let is_answered = (*t).is_shadow != 0u && (*t).best.triangle != MISS;
+      (*t).group.slots = select((*t).group.slots, 0u, is_answered);
+      (*t).top.slots = select((*t).top.slots, 0u, is_answered);
+      (*t).stack_size = select((*t).stack_size, 0u, is_answered);
     }
     go_on(t);
+    left = select(0u, left, (*t).searching != 0u);
   }
-  return !(*t).searching;
+  return (*t).searching == 0u;
 }
 
 // Finds the next element, among the children that were put aside last; where there is none the ray
 // is done.
 fn go_on(t: ptr<function, Traversal>) {
-  let t_max = (*t).best.high * FAR_SLACK;
-  if ((*t).group.slots == 0u || bitcast<f32>((*t).group.entry) > t_max) {
-    (*t).group.slots = 0u;
-    while ((*t).stack_size > 0u) {
-      if (count_step()) {
-        break;
-      }
-      let group = (*t).top;
-      (*t).stack_size -= 1u;
-      if ((*t).stack_size > 0u) {
-        (*t).top = stack_read((*t).stack_size - 1u);
-      }
-      if (bitcast<f32>(group.entry) <= t_max) {
-        (*t).group = group;
-        break;
-      }
-    }
-  }
-  // The root, unless there is more to do for this ray.
-  (*t).next = 0u;
+  take_up_group(t);
   let is_done = (*t).group.slots == 0u;
-  if (!is_done) {
-    let slot = ((*t).group.slots & 15u) - 1u;
-    let is_leaf = slot >= ((*t).group.header & 15u);
-    (*t).next = (((*t).group.header >> 4u) + slot) | select(0u, LEAF_FLAG, is_leaf);
-    (*t).group.slots >>= 4u;
-  }
+  let slot = ((*t).group.slots & 15u) - 1u;
+  let is_leaf = slot >= ((*t).group.header & 15u);
+  let next = (((*t).group.header >> 4u) + slot) | select(0u, LEAF_FLAG, is_leaf);
+  // The root, unless there is more to do for this ray.
+  (*t).next = select(next, 0u, is_done);
+  (*t).group.slots >>= 4u;
   (*t).start = load_element_start((*t).next & ~LEAF_FLAG);
-  if (is_done) {
-    finish_ray(t);
+  // The second ray comes after the first.
+  let is_shadow_done = is_done && (*t).is_shadow != 0u;
+  (*t).occluded |= select(0u, 1u, is_shadow_done && (*t).best.triangle != MISS);
+  (*t).searching = select((*t).searching, (*t).has_ray & (*t).is_shadow, is_done);
+  if (is_shadow_done) {
+    trace_ray(t, false);
   }
 }
 
-// Takes up the second ray after the first.
-fn finish_ray(t: ptr<function, Traversal>) {
-  if ((*t).is_shadow) {
-    (*t).occluded = (*t).best.triangle != MISS;
-    (*t).searching = (*t).query.has_ray;
-    trace_ray(t, false);
-  } else {
-    (*t).searching = false;
+// Where nothing is left of the group, or all of it is beyond the closest hit, the last one that was put aside and is not.
+fn take_up_group(t: ptr<function, Traversal>) {
+  let t_max = (*t).best.high * FAR_SLACK;
+  (*t).group.slots = select((*t).group.slots, 0u, bitcast<f32>((*t).group.entry) > t_max);
+  let aside = (*t).stack_size + select(0u, 1u, (*t).top.slots != 0u);
+  var waiting = select(0u, aside, (*t).group.slots == 0u);
+  while (waiting != 0u) {
+    if (count_step()) {
+      break;
+    }
+    if ((*t).top.slots == 0u) {
+      (*t).stack_size -= 1u;
+      (*t).top = stack_read((*t).stack_size);
+    }
+    let is_near = bitcast<f32>((*t).top.entry) <= t_max;
+    (*t).group = select_group((*t).group, (*t).top, is_near);
+    (*t).top.slots = 0u;
+    waiting = select(waiting - 1u, 0u, is_near);
   }
 }

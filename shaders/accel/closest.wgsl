@@ -27,14 +27,14 @@ fn test_pair(
     let flags = select(e.d.y, e.d.z, second);
     let t = exact_t_bounds(edges, fan_triangle(fan, second));
     let is_certain = t.certain && !(fan.first && fan.second) && !(HAS_ALPHA && (flags & TRIANGLE_ALPHA) != 0u);
-    if (is_certain && (t.low > best.high || t.high < 0.0)) {
-      return best;
-    }
-    if (is_certain && t.low > 0.0 && t.high < best.low) {
-      if (!is_culled(flags, edges.x < 0.0, camera_ray)) {
-        best = Closest(t.low, t.high, id + select(0u, 1u, second));
-      }
-    } else {
+    // No branch but to what is seldom needed: among so many lanes one goes each way.
+    let is_beyond = is_certain && (t.low > best.high || t.high < 0.0);
+    let is_before = is_certain && t.low > 0.0 && t.high < best.low;
+    let is_hit = is_before && !is_culled(flags, edges.x < 0.0, camera_ray);
+    best.low = select(best.low, t.low, is_hit);
+    best.high = select(best.high, t.high, is_hit);
+    best.triangle = select(best.triangle, id + select(0u, 1u, second), is_hit);
+    if (!is_beyond && !is_before) {
       best = test_pair_exactly(e, index, setup, fan, so_far, camera_ray, seed);
     }
   }

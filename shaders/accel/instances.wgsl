@@ -15,12 +15,15 @@ const INSTANCE_FLAG: u32 = 0x80000000u;
 // it holds of the world.
 const RETURN_FLAG: u32 = 1u;
 
-// A query under way. The rest of its state, the children that wait, is on the stack.
+// A query under way. The rest of its state, the children that wait, is on the stack. Flags are numbers, as in
+// accel/bvh.wgsl.
 struct Traversal {
   query: Query,
+  has_ray: u32,
+  camera_ray: u32,
   // The ray that is traced now, in the world: query.shadow, then query.ray.
   ray: Ray,
-  is_shadow: bool,
+  is_shadow: u32,
   // Of the ray in the space that it is in.
   setup: RaySetup,
   boxes: BoxSetup,
@@ -32,15 +35,17 @@ struct Traversal {
   stack_size: u32,
   // The element to look at next.
   next: u32,
-  occluded: bool,
-  searching: bool,
+  occluded: u32,
+  searching: u32,
 }
 
 fn trace_begin(query: Query) -> Traversal {
   var t: Traversal;
   t.query = query;
-  t.occluded = false;
-  t.searching = query.has_ray || query.has_shadow;
+  t.has_ray = select(0u, 1u, query.has_ray);
+  t.camera_ray = select(0u, 1u, query.camera_ray);
+  t.occluded = 0u;
+  t.searching = select(0u, 1u, query.has_ray || query.has_shadow);
   t.stack_size = 0u;
   trace_ray(&t, query.has_shadow);
   return t;
@@ -48,7 +53,7 @@ fn trace_begin(query: Query) -> Traversal {
 
 // Takes up one of the two rays.
 fn trace_ray(t: ptr<function, Traversal>, is_shadow: bool) {
-  (*t).is_shadow = is_shadow;
+  (*t).is_shadow = select(0u, 1u, is_shadow);
   (*t).ray = (*t).query.ray;
   if (is_shadow) {
     (*t).ray = (*t).query.shadow;
@@ -119,14 +124,16 @@ fn trace_answer(t: Traversal) -> Answer {
     element_shift = 0u;
     hit = Hit(refined.t, t.best.triangle, refined.b, refined.back_face, hit.pair);
   }
-  return Answer(hit, t.occluded);
+  return Answer(hit, t.occluded != 0u);
 }
 
 // Looks at so many elements, or fewer where that answers the query; false if there is more to do.
 fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
-  for (var i = 0u; i < elements && (*t).searching; i += 1u) {
+  var left = select(0u, elements, (*t).searching != 0u);
+  while (left != 0u) {
+    left -= 1u;
     if (count_step()) {
-      (*t).searching = false;
+      (*t).searching = 0u;
       break;
     }
     let index = (*t).next & ~LEAF_FLAG;
@@ -136,39 +143,35 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
     if (COUNT_RAYS) { count_element(is_node || is_instance); }
     if (is_node) {
       let children = visit_node(e, (*t).boxes, (*t).best.high);
-      if (children.slots != 0u) {
-        if ((*t).group.slots != 0u) {
-          stack_write((*t).stack_size, (*t).group);
-          (*t).stack_size += 1u;
-        }
-        (*t).group = children;
+      if (children.slots != 0u && (*t).group.slots != 0u) {
+        stack_write((*t).stack_size, (*t).group);
+        (*t).stack_size += 1u;
       }
+      (*t).group = select_group((*t).group, children, children.slots != 0u);
     } else if (is_instance) {
       enter_instance(t, e, index);
     } else {
       look_at_pair(t, e, index);
     }
     go_on(t);
+    left = select(0u, left, (*t).searching != 0u);
   }
-  return !(*t).searching;
+  return (*t).searching == 0u;
 }
 
 fn look_at_pair(t: ptr<function, Traversal>, e: Element, index: u32) {
   let before = (*t).best.triangle;
-  let camera_ray = (*t).query.camera_ray && !(*t).is_shadow;
+  let camera_ray = (*t).camera_ray > (*t).is_shadow;
   (*t).best = test_pair(e, index + element_shift, (*t).ray, (*t).setup, (*t).best, camera_ray, seed_here(*t));
-  if ((*t).best.triangle != before) {
-    (*t).best_instance = (*t).instance;
-  }
-  if ((*t).is_shadow && (*t).best.triangle != MISS) {
-    (*t).group.slots = 0u;
-    (*t).stack_size = 0u;
-  }
+  (*t).best_instance = select((*t).best_instance, (*t).instance, (*t).best.triangle != before);
+  let is_answered = (*t).is_shadow != 0u && (*t).best.triangle != MISS;
+  (*t).group.slots = select((*t).group.slots, 0u, is_answered);
+  (*t).stack_size = select((*t).stack_size, 0u, is_answered);
 }
 
 // What decides by chance where surfaces are blended: another number in each instance.
 fn seed_here(t: Traversal) -> u32 {
-  var seed = select(t.query.seed, t.query.shadow_seed, t.is_shadow);
+  var seed = select(t.query.seed, t.query.shadow_seed, t.is_shadow != 0u);
   if (HAS_ALPHA) {
     if (t.instance != 0u) {
       seed = hash2(vec2u(seed, t.instance));
@@ -180,37 +183,37 @@ fn seed_here(t: Traversal) -> u32 {
 // Finds the next element, among the children that were put aside last; where there is none the ray
 // is done.
 fn go_on(t: ptr<function, Traversal>) {
-  if ((*t).group.slots == 0u || bitcast<f32>((*t).group.entry) > (*t).best.high * FAR_SLACK) {
-    (*t).group.slots = 0u;
-    while ((*t).stack_size > 0u) {
-      if (count_step()) {
-        break;
-      }
-      (*t).stack_size -= 1u;
-      let entry = stack_read_entry((*t).stack_size);
-      if ((entry & RETURN_FLAG) != 0u) {
-        settle(t);
-        go_to_world(t);
-      }
-      if (bitcast<f32>(entry & ~RETURN_FLAG) <= (*t).best.high * FAR_SLACK) {
-        (*t).group = stack_read((*t).stack_size);
-        (*t).group.entry &= ~RETURN_FLAG;
-        if ((*t).group.slots != 0u) {
-          break;
-        }
-      }
-    }
-  }
-  if ((*t).group.slots != 0u) {
-    let slot = ((*t).group.slots & 15u) - 1u;
-    let is_leaf = slot >= ((*t).group.header & 15u);
-    (*t).next = (((*t).group.header >> 4u) + slot) | select(0u, LEAF_FLAG, is_leaf);
-    (*t).group.slots >>= 4u;
-  } else if ((*t).is_shadow) {
-    (*t).occluded = (*t).best.triangle != MISS;
-    (*t).searching = (*t).query.has_ray;
+  take_up_group(t);
+  let is_done = (*t).group.slots == 0u;
+  let slot = ((*t).group.slots & 15u) - 1u;
+  let is_leaf = slot >= ((*t).group.header & 15u);
+  (*t).next = (((*t).group.header >> 4u) + slot) | select(0u, LEAF_FLAG, is_leaf);
+  (*t).group.slots >>= 4u;
+  // The second ray comes after the first.
+  let is_shadow_done = is_done && (*t).is_shadow != 0u;
+  (*t).occluded |= select(0u, 1u, is_shadow_done && (*t).best.triangle != MISS);
+  (*t).searching = select((*t).searching, (*t).has_ray & (*t).is_shadow, is_done);
+  if (is_shadow_done) {
     trace_ray(t, false);
-  } else {
-    (*t).searching = false;
+  }
+}
+
+// Where nothing is left of the group, or all of it is beyond the closest hit, the last one that was put aside and is not.
+fn take_up_group(t: ptr<function, Traversal>) {
+  let is_beyond = bitcast<f32>((*t).group.entry) > (*t).best.high * FAR_SLACK;
+  (*t).group.slots = select((*t).group.slots, 0u, is_beyond);
+  while ((*t).group.slots == 0u && (*t).stack_size != 0u) {
+    if (count_step()) {
+      break;
+    }
+    (*t).stack_size -= 1u;
+    let waiting = stack_read((*t).stack_size);
+    if ((waiting.entry & RETURN_FLAG) != 0u) {
+      settle(t);
+      go_to_world(t);
+    }
+    let entry = waiting.entry & ~RETURN_FLAG;
+    let is_near = bitcast<f32>(entry) <= (*t).best.high * FAR_SLACK;
+    (*t).group = select_group((*t).group, Group(waiting.header, waiting.slots, entry), is_near);
   }
 }

@@ -9,6 +9,15 @@ struct Group {
   entry: u32,
 }
 
+// One of two groups.
+fn select_group(if_false: Group, if_true: Group, condition: bool) -> Group {
+  return Group(
+    select(if_false.header, if_true.header, condition),
+    select(if_false.slots, if_true.slots, condition),
+    select(if_false.entry, if_true.entry, condition),
+  );
+}
+
 const STACK_LANES: u32 = 64u;
 
 // Of these two the one that is used is compiled: that of the workgroup unless STACK_SIZE levels for
