@@ -1,13 +1,13 @@
 // Traversal of the bounding volume hierarchy. Twin of src/accel/traverse.rs, operation for
 // operation; the bounds on its rounding errors are there, the layout of an element is in
 // src/accel/element.rs. Of a structure of two levels: accel/instances.wgsl.
-// Needs const STACK_SIZE (Bvh::depth, at least 1).
+// Needs const STACK_SIZE (Bvh::depth without the groups in registers, at least 1).
 
 #include "accel/boxes.wgsl"
 #include "accel/closest.wgsl"
 
-// A query under way. The rest of its state, the children that wait, is on the stack. Flags are numbers, 0 or 1, and there
-// are few branches: on CPUs a truth value that outlives a branch takes longer than a number (docs/kernel.md).
+// A query under way. Flags are numbers, 0 or 1, and there are few branches: on CPUs a truth value that outlives a branch
+// takes longer than a number (docs/kernel.md).
 struct Traversal {
   query: Query,
   has_ray: u32,
@@ -19,9 +19,7 @@ struct Traversal {
   boxes: BoxSetup,
   best: Closest,
   group: Group,
-  // The group that was put aside last, if it has slots; those before it are on the stack.
-  top: Group,
-  stack_size: u32,
+  aside: Aside,
   // The element to look at next, and its first words: the wait for memory begins as soon as it is known.
   next: u32,
   start: ElementStart,
@@ -36,8 +34,7 @@ fn trace_begin(query: Query) -> Traversal {
   t.camera_ray = select(0u, 1u, query.camera_ray);
   t.occluded = 0u;
   t.searching = select(0u, 1u, query.has_ray || query.has_shadow);
-  t.stack_size = 0u;
-  t.top = Group(0u, 0u, 0u);
+  t.aside = nothing_aside();
   trace_ray(&t, query.has_shadow);
   t.start = load_element_start(0u);
   return t;
@@ -81,12 +78,7 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
     if (COUNT_RAYS) { count_element((*t).next < LEAF_FLAG); }
     if ((*t).next < LEAF_FLAG) {
       let children = visit_node(e, (*t).boxes, (*t).best.high);
-      let is_put_aside = children.slots != 0u && (*t).group.slots != 0u;
-      if (is_put_aside && (*t).top.slots != 0u) {
-        stack_write((*t).stack_size, (*t).top);
-        (*t).stack_size += 1u;
-      }
-      (*t).top = select_group((*t).top, (*t).group, is_put_aside);
+      (*t).aside = put_aside((*t).aside, (*t).group, children.slots != 0u && (*t).group.slots != 0u);
       (*t).group = select_group((*t).group, children, children.slots != 0u);
     } else {
       let seed = select((*t).query.seed, (*t).query.shadow_seed, (*t).is_shadow != 0u);
@@ -94,8 +86,7 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
       (*t).best = test_pair(e, index, (*t).ray, (*t).setup, (*t).best, camera_ray, seed);
       let is_answered = (*t).is_shadow != 0u && (*t).best.triangle != MISS;
       (*t).group.slots = select((*t).group.slots, 0u, is_answered);
-      (*t).top.slots = select((*t).top.slots, 0u, is_answered);
-      (*t).stack_size = select((*t).stack_size, 0u, is_answered);
+      (*t).aside = emptied((*t).aside, is_answered);
     }
     go_on(t);
     left = select(0u, left, (*t).searching != 0u);
@@ -128,19 +119,15 @@ fn go_on(t: ptr<function, Traversal>) {
 fn take_up_group(t: ptr<function, Traversal>) {
   let t_max = (*t).best.high * FAR_SLACK;
   (*t).group.slots = select((*t).group.slots, 0u, bitcast<f32>((*t).group.entry) > t_max);
-  let aside = (*t).stack_size + select(0u, 1u, (*t).top.slots != 0u);
-  var waiting = select(0u, aside, (*t).group.slots == 0u);
+  var waiting = select(0u, aside_count((*t).aside), (*t).group.slots == 0u);
   while (waiting != 0u) {
     if (count_step()) {
       break;
     }
-    if ((*t).top.slots == 0u) {
-      (*t).stack_size -= 1u;
-      (*t).top = stack_read((*t).stack_size);
-    }
-    let is_near = bitcast<f32>((*t).top.entry) <= t_max;
-    (*t).group = select_group((*t).group, (*t).top, is_near);
-    (*t).top.slots = 0u;
+    (*t).aside = with_first((*t).aside);
+    let is_near = bitcast<f32>((*t).aside.first.entry) <= t_max;
+    (*t).group = select_group((*t).group, (*t).aside.first, is_near);
+    (*t).aside = without_first((*t).aside);
     waiting = select(waiting - 1u, 0u, is_near);
   }
 }

@@ -1,9 +1,9 @@
 // Traversal of a structure of two levels: a tree over the world, some of whose leaves are instances of
 // trees in spaces of their own. Twin of src/accel/traverse.rs.
 //
-// A ray that reaches an instance is turned into its space. What waits in the world stays on the stack
-// below a note to return. Hits of all spaces are put in order by their t, and their numbers.
-// Needs const STACK_SIZE (Bvh::depth).
+// A ray that reaches an instance is turned into its space. What waits in the world stays put aside, before a note to
+// return. Hits of all spaces are put in order by their t, and their numbers.
+// Needs const STACK_SIZE, as accel/bvh.wgsl.
 
 #include "accel/boxes.wgsl"
 #include "accel/closest.wgsl"
@@ -11,12 +11,14 @@
 // In Element.d.y of a leaf: it is an instance.
 const INSTANCE_FLAG: u32 = 0x80000000u;
 
-// In Group.entry on the stack, whose lowest bits are free: what is above it is of an instance, and what
-// it holds of the world.
+// In Group.entry of what is put aside, whose lowest bits are free: what comes later is of an instance, and what it holds
+// of the world.
 const RETURN_FLAG: u32 = 1u;
 
-// A query under way. The rest of its state, the children that wait, is on the stack. Flags are numbers, as in
-// accel/bvh.wgsl.
+// In Group.slots of such a note that holds nothing: a slot that no node has.
+const NO_SLOT: u32 = 15u;
+
+// A query under way. Flags are numbers, as in accel/bvh.wgsl.
 struct Traversal {
   query: Query,
   has_ray: u32,
@@ -32,7 +34,7 @@ struct Traversal {
   instance: u32,
   best_instance: u32,
   group: Group,
-  stack_size: u32,
+  aside: Aside,
   // The element to look at next.
   next: u32,
   occluded: u32,
@@ -46,7 +48,7 @@ fn trace_begin(query: Query) -> Traversal {
   t.camera_ray = select(0u, 1u, query.camera_ray);
   t.occluded = 0u;
   t.searching = select(0u, 1u, query.has_ray || query.has_shadow);
-  t.stack_size = 0u;
+  t.aside = nothing_aside();
   trace_ray(&t, query.has_shadow);
   return t;
 }
@@ -90,8 +92,8 @@ fn enter_instance(t: ptr<function, Traversal>, leaf: Element, index: u32) {
   settle(t);
   var waiting = (*t).group;
   waiting.entry |= RETURN_FLAG;
-  stack_write((*t).stack_size, waiting);
-  (*t).stack_size += 1u;
+  waiting.slots = select(waiting.slots, NO_SLOT, waiting.slots == 0u);
+  (*t).aside = put_aside((*t).aside, waiting, true);
   (*t).instance = index;
   element_shift = leaf.d.z;
   go_along(t, ray_in_instance((*t).ray, leaf));
@@ -143,10 +145,7 @@ fn trace_on(t: ptr<function, Traversal>, elements: u32) -> bool {
     if (COUNT_RAYS) { count_element(is_node || is_instance); }
     if (is_node) {
       let children = visit_node(e, (*t).boxes, (*t).best.high);
-      if (children.slots != 0u && (*t).group.slots != 0u) {
-        stack_write((*t).stack_size, (*t).group);
-        (*t).stack_size += 1u;
-      }
+      (*t).aside = put_aside((*t).aside, (*t).group, children.slots != 0u && (*t).group.slots != 0u);
       (*t).group = select_group((*t).group, children, children.slots != 0u);
     } else if (is_instance) {
       enter_instance(t, e, index);
@@ -166,7 +165,7 @@ fn look_at_pair(t: ptr<function, Traversal>, e: Element, index: u32) {
   (*t).best_instance = select((*t).best_instance, (*t).instance, (*t).best.triangle != before);
   let is_answered = (*t).is_shadow != 0u && (*t).best.triangle != MISS;
   (*t).group.slots = select((*t).group.slots, 0u, is_answered);
-  (*t).stack_size = select((*t).stack_size, 0u, is_answered);
+  (*t).aside = emptied((*t).aside, is_answered);
 }
 
 // What decides by chance where surfaces are blended: another number in each instance.
@@ -202,18 +201,22 @@ fn go_on(t: ptr<function, Traversal>) {
 fn take_up_group(t: ptr<function, Traversal>) {
   let is_beyond = bitcast<f32>((*t).group.entry) > (*t).best.high * FAR_SLACK;
   (*t).group.slots = select((*t).group.slots, 0u, is_beyond);
-  while ((*t).group.slots == 0u && (*t).stack_size != 0u) {
+  var count = select(0u, aside_count((*t).aside), (*t).group.slots == 0u);
+  while (count != 0u) {
     if (count_step()) {
       break;
     }
-    (*t).stack_size -= 1u;
-    let waiting = stack_read((*t).stack_size);
+    (*t).aside = with_first((*t).aside);
+    var waiting = (*t).aside.first;
+    (*t).aside = without_first((*t).aside);
     if ((waiting.entry & RETURN_FLAG) != 0u) {
       settle(t);
       go_to_world(t);
+      waiting.entry &= ~RETURN_FLAG;
+      waiting.slots = select(waiting.slots, 0u, waiting.slots == NO_SLOT);
     }
-    let entry = waiting.entry & ~RETURN_FLAG;
-    let is_near = bitcast<f32>(entry) <= (*t).best.high * FAR_SLACK;
-    (*t).group = select_group((*t).group, Group(waiting.header, waiting.slots, entry), is_near);
+    let is_near = bitcast<f32>(waiting.entry) <= (*t).best.high * FAR_SLACK;
+    (*t).group = select_group((*t).group, waiting, is_near);
+    count = select(count - 1u, 0u, (*t).group.slots != 0u);
   }
 }

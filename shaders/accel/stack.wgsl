@@ -1,4 +1,5 @@
-// The traversal's stack, in the memory of the workgroup: neighbouring lanes' entries are neighbours.
+// The traversal's stack, its latest groups in registers, the others in the memory of the workgroup: neighbouring lanes'
+// entries are neighbours.
 // Needs const STACK_SIZE (levels), STACK_IN_WORKGROUP.
 
 // Children that are hit and wait: a node's last header word, their slots + 1 in 4 bits each with
@@ -52,10 +53,66 @@ fn stack_write(level: u32, group: Group) {
   stack_set(3u * level + 2u, group.entry);
 }
 
-fn stack_read_entry(level: u32) -> u32 {
-  return stack_get(3u * level + 2u);
+fn stack_read(level: u32) -> Group {
+  return Group(stack_get(3u * level), stack_get(3u * level + 1u), stack_get(3u * level + 2u));
 }
 
-fn stack_read(level: u32) -> Group {
-  return Group(stack_get(3u * level), stack_get(3u * level + 1u), stack_read_entry(level));
+// The groups that were put aside: the last three in registers, the last one first, where those that are taken up have no
+// slots; those before them on the stack. Most are taken up before they get there.
+struct Aside {
+  first: Group,
+  second: Group,
+  third: Group,
+  // On the stack.
+  levels: u32,
+}
+
+fn nothing_aside() -> Aside {
+  let none = Group(0u, 0u, 0u);
+  return Aside(none, none, none, 0u);
+}
+
+// Nothing if asked.
+fn emptied(so_far: Aside, is_asked: bool) -> Aside {
+  var aside = so_far;
+  aside.first.slots = select(aside.first.slots, 0u, is_asked);
+  aside.second.slots = select(aside.second.slots, 0u, is_asked);
+  aside.third.slots = select(aside.third.slots, 0u, is_asked);
+  aside.levels = select(aside.levels, 0u, is_asked);
+  return aside;
+}
+
+// How many there are.
+fn aside_count(aside: Aside) -> u32 {
+  let slots = vec3u(aside.first.slots, aside.second.slots, aside.third.slots);
+  let is_there = select(vec3u(0u), vec3u(1u), slots != vec3u(0u));
+  return aside.levels + is_there.x + is_there.y + is_there.z;
+}
+
+// Puts a group aside if asked.
+fn put_aside(so_far: Aside, group: Group, is_asked: bool) -> Aside {
+  var aside = so_far;
+  if (is_asked && aside.third.slots != 0u) {
+    stack_write(aside.levels, aside.third);
+    aside.levels += 1u;
+  }
+  aside.third = select_group(aside.third, aside.second, is_asked);
+  aside.second = select_group(aside.second, aside.first, is_asked);
+  aside.first = select_group(aside.first, group, is_asked);
+  return aside;
+}
+
+// The same with the last group, of which there must be one, in `first`.
+fn with_first(so_far: Aside) -> Aside {
+  var aside = so_far;
+  if (aside.first.slots == 0u) {
+    aside.levels -= 1u;
+    aside.first = stack_read(aside.levels);
+  }
+  return aside;
+}
+
+// What is left when `first` is taken up.
+fn without_first(aside: Aside) -> Aside {
+  return Aside(aside.second, aside.third, Group(0u, 0u, 0u), aside.levels);
 }

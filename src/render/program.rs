@@ -143,12 +143,14 @@ pub enum Constant {
     U32(u32),
 }
 
-/// The constants of the traversal's stack for a tree of so many levels: it is in the workgroup's
-/// memory, of which the device has `workgroup_bytes`, if all lanes of a workgroup fit.
+/// The constants of the traversal's stack for a tree in which a ray puts so many groups aside at most: it is in the
+/// workgroup's memory, of which the device has `workgroup_bytes`, if all lanes of a workgroup fit.
 pub fn stack_constants(depth: u32, workgroup_bytes: u32) -> [(&'static str, Constant); 2] {
     /// Three words a level for each of 64 lanes (`shaders/accel/stack.wgsl`).
     const LEVEL_BYTES: u32 = 3 * 4 * 64;
-    let levels = depth.max(1);
+    /// Groups in registers (`Aside`, there).
+    const IN_REGISTERS: u32 = 3;
+    let levels = depth.saturating_sub(IN_REGISTERS).max(1);
     let fits = levels * LEVEL_BYTES <= workgroup_bytes;
     [
         ("STACK_SIZE", Constant::U32(levels)),

@@ -172,14 +172,11 @@ fn mistakes_are_noticed() {
     for (from, to) in [
         ("index + element_shift", "index"),
         ("  settle(t);\n  var waiting", "  var waiting"),
+        ("      settle(t);\n      go_to_world", "      go_to_world"),
+        ("      go_to_world(t);\n", ""),
         (
-            "        settle(t);\n        go_to_world",
-            "        go_to_world",
-        ),
-        ("        go_to_world(t);\n", ""),
-        (
-            "(*t).best_instance = (*t).instance",
-            "(*t).best_instance = 0u",
+            "select((*t).best_instance, (*t).instance,",
+            "select((*t).best_instance, 0u,",
         ),
         (
             "waiting.entry |= RETURN_FLAG",
