@@ -162,15 +162,27 @@ impl Flattening<'_> {
     /// Whether there is something to load at a pointer, whatever its buffer's length is.
     fn is_always_there(&self, pointer: Handle<Expression>) -> bool {
         match self.function.expressions[pointer] {
-            Expression::LocalVariable(_) | Expression::FunctionArgument(_) => true,
+            Expression::LocalVariable(_) => true,
+            Expression::FunctionArgument(index) => {
+                let argument = self.function.arguments[index as usize].ty;
+                let space = self.module.types[argument].inner.pointer_space();
+                space.is_some_and(has_fixed_size)
+            }
             Expression::GlobalVariable(variable) => {
-                let space = self.module.global_variables[variable].space;
-                matches!(space, AddressSpace::Private | AddressSpace::Uniform)
+                has_fixed_size(self.module.global_variables[variable].space)
             }
             Expression::AccessIndex { base, .. } => self.is_always_there(base),
             _ => false,
         }
     }
+}
+
+/// Whether the shader says how large what is in a space is.
+fn has_fixed_size(space: AddressSpace) -> bool {
+    matches!(
+        space,
+        AddressSpace::Function | AddressSpace::Private | AddressSpace::Uniform
+    )
 }
 
 #[cfg(test)]
